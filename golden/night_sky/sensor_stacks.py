@@ -94,9 +94,8 @@ class Sensor:
             ),
         )
 
-    def truth(self, is_well_seen):
-        """Figures in the terms of the program; the curvature is that at the full well or the end of the converter."""
-        end = self.full_well if is_well_seen else self.end_of_converter()
+    def truth(self, end_e):
+        """Figures in the terms of the program; the curvature is that at the end which the program states."""
         return {
             "gain_e_per_dn": self.gain,
             "read_noise_e": self.read_noise,
@@ -104,17 +103,11 @@ class Sensor:
             "prnu_fraction": self.prnu,
             "full_well_e": self.full_well if self.well_first else None,
             "bias_dn": self.bias + float(self.columns_e.mean()) / self.gain,
-            "non_linearity": self.curvature * end / self.full_well,
+            "non_linearity": self.curvature * end_e / self.full_well if end_e else None,
             "dark_current_spread_e_per_s": self.dark_spread,
             "column_offset_e": self.column_offset,
             "row_noise_e": self.row_noise,
         }
-
-    def end_of_converter(self):
-        """Electrons at the largest digital number, for e - c e^2 / full well."""
-        end = (2**self.bits - 1 - self.bias) * self.gain
-        root = 1 - 4 * self.curvature * end / self.full_well
-        return 2 * end / (1 + np.sqrt(root)) if root > 0 else self.full_well
 
     def frame(self, time_s, electrons_per_s):
         """A frame with a mean of photoelectrons, step by step of the pipeline."""
@@ -202,7 +195,7 @@ def main():
             sensor = Sensor(np.random.default_rng([arguments.seed, number]), folder)
             levels, saturates = sensor.write_stacks(folder)
             document = measured(arguments.program, folder)
-        truth, found = sensor.truth(document["limit"] == "full_well"), document["figures"]
+        truth, found = sensor.truth(document["end_e"]), document["figures"]
         words = []
         for name in WANTED + ALSO:
             word, error, is_good = compare(name, truth[name], found[name])

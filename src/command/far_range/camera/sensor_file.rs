@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use config::toml_file;
-use files::Failure;
+use files::{Failure, FileError};
 use sensor_fit::{Finding, SensorFigures};
 use serde::{Deserialize, Serialize};
 use sim::sensor::SensorConfig;
@@ -31,7 +31,7 @@ impl SensorSource {
     /// # Errors
     /// A [`Failure`] with the location of the first mistake.
     pub(super) fn read(path: &Path) -> Result<Self, Failure> {
-        let text = toml_file::read_text(path)?;
+        let text = toml_file::read_text(path).map_err(|source| FileError::io(path, "read", source))?;
         let SensorTables { sensor } = toml_file::parse(path, &text)?;
         sensor.check().map_err(|error| Failure::from(toml_file::out_of_range(path, &text, &error)))?;
         Ok(Self { sensor, text })

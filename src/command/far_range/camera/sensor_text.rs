@@ -131,7 +131,7 @@ pub(super) fn document(figures: &SensorFigures) -> Value {
         "ok": figures.gain_e_per_dn.value().is_some(), "columns": figures.size[0], "rows": figures.size[1],
         "bit_depth": figures.bit_depth.0, "bit_depth_determined": figures.bit_depth.1,
         "shifted_bits": figures.shifted_bits, "limit": limit, "figures": of_name,
-        "light_drift": figures.light_drift,
+        "light_drift": figures.light_drift, "end_e": figures.end_e,
         "defects": {
             "pixels": defects.pixels, "hot": defects.hot, "dead": defects.dead,
             "dead_columns": defects.dead_columns, "odd_response": defects.odd_response, "noisy": defects.noisy,

@@ -15,7 +15,9 @@ use crate::photon_transfer::{
     fit_transfer, linear_signal, signal_of_mean, slope_at, variance_at,
 };
 use crate::rounding::{ROUNDING_VARIANCE, RoundedNoise, rounding_of_mean, unrounded_variance};
-use crate::saturation::{FULL_SHARE, StackState, bits_of_full_scale, states_of_levels};
+use crate::saturation::{
+    FULL_SHARE, MAX_SHARE_OF_ALL, MAX_SHARE_OF_GOOD, StackState, bits_of_full_scale, states_of_levels,
+};
 use crate::stack::{FrameStack, SensorFitError, SensorFrames};
 
 /// Share of the largest digital number up to which the dark signal of a hot pixel counts.
@@ -30,6 +32,9 @@ const LINEAR_VARIANCE: f64 = 0.05;
 
 /// Temporal variance from which means follow offsets to 2 %, DN²: below, the rounding hides or doubles them.
 const MIN_VARIANCE_OF_OFFSETS: f64 = 0.22;
+
+/// Standard deviation of the rounding, DN: pixels do not differ less.
+const MIN_STEP_DN: f64 = 0.29;
 
 /// Relative changes of the light within a level that are reported.
 const MIN_DRIFT: f64 = 1e-3;
@@ -115,7 +120,7 @@ fn measure<'a>(frames: &'a SensorFrames, good: &GoodPixels, top: u16) -> Vec<Mea
             Measured { stack, kind, maps, moments, state: StackState::Used }
         })
         .collect();
-    set_states(&mut stacks, top);
+    set_states(&mut stacks, top, MAX_SHARE_OF_ALL);
     stacks
 }
 
@@ -126,7 +131,7 @@ fn remeasure(stacks: &mut [Measured<'_>], good: &GoodPixels, top: u16) {
         let change = if measured.kind == "flat" { FrameChange::Factor(bias) } else { FrameChange::Offset };
         measured.moments = stack_moments(measured.stack, &measured.maps, good, change, top);
     });
-    set_states(stacks, top);
+    set_states(stacks, top, MAX_SHARE_OF_GOOD);
 }
 
 /// Mean of the stack without light that has the shortest exposure; 0 without one.
@@ -136,7 +141,7 @@ fn dark_level(stacks: &[Measured<'_>]) -> f64 {
 }
 
 /// Sets the use of every stack.
-fn set_states(stacks: &mut [Measured<'_>], top: u16) {
+fn set_states(stacks: &mut [Measured<'_>], top: u16, max_share: f64) {
     let bias = dark_level(stacks);
     for kind in ["bias", "dark", "flat"] {
         let indices: Vec<usize> = (0..stacks.len()).filter(|index| stacks[*index].kind == kind).collect();
@@ -148,7 +153,7 @@ fn set_states(stacks: &mut [Measured<'_>], top: u16) {
                 (rises, &measured.moments)
             })
             .collect();
-        let mut states = states_of_levels(&levels, bias, top);
+        let mut states = states_of_levels(&levels, bias, top, max_share);
         if kind != "flat" {
             // Darks are not expected to fill the wells: only ends of the converter matter.
             for state in &mut states {
@@ -221,13 +226,13 @@ fn find_defects(stacks: &[Measured<'_>], good: &GoodPixels) -> Vec<Defect> {
         // exposure, which shows them least mixed with dark current.
         let shortest = dark_stacks.iter().min_by(|a, b| a.time_s.total_cmp(&b.time_s));
         if let Some(stack) = shortest {
-            let floor = sqrt(stack.moments.pixel[0] / stack.moments.frames as f64).max(0.3);
+            let floor = sqrt(stack.moments.pixel[0] / stack.moments.frames as f64).max(MIN_STEP_DN);
             let offsets = without_lines(&stack.maps.mean, good);
             mark(&offsets, floor, [true, true], |pixel| defects[pixel].noisy = true);
         }
         if let Some(rise) = &dark.rise {
             let longest = dark_stacks.iter().map(|stack| stack.time_s).fold(0.0, f64::max);
-            mark(rise, 0.1 / longest.max(1e-9), [false, true], |pixel| defects[pixel].hot = true);
+            mark(rise, MIN_STEP_DN / longest.max(1e-9), [false, true], |pixel| defects[pixel].hot = true);
         }
     }
     if let (Some(dark), false) = (&dark, flats.is_empty()) {
@@ -267,6 +272,17 @@ fn mark(values: &[f32], floor: f64, sides: [bool; 2], mut put: impl FnMut(usize)
     }
 }
 
+/// Median of values that lie on steps: interpolated within the step of the middle.
+fn grouped_median(values: &[f64], step: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let Some(middle) = sorted.get(sorted.len() / 2).copied() else { return 0.0 };
+    let below = sorted.partition_point(|value| *value < middle - 0.5 * step) as f64;
+    let inside = sorted.partition_point(|value| *value < middle + 0.5 * step) as f64 - below;
+    let centre = sorted.iter().skip(below as usize).take(inside as usize).sum::<f64>() / inside;
+    centre + step * ((0.5 * sorted.len() as f64 - below) / inside - 0.5)
+}
+
 /// Marks dead pixels and those of an odd response.
 fn mark_responses(dark: &DarkSignal, flats: &[MeasuredStack<'_>], good: &GoodPixels, defects: &mut [Defect]) {
     let sum = response_sum(dark, flats);
@@ -281,9 +297,12 @@ fn mark_responses(dark: &DarkSignal, flats: &[MeasuredStack<'_>], good: &GoodPix
         }
     }
     for (defect, ratio) in defects.iter_mut().zip(&ratios) {
-        defect.dead = f64::from(*ratio) < DEAD_RESPONSE;
+        // A hot pixel that fills its well has no response left, but is not dead.
+        defect.dead = f64::from(*ratio) < DEAD_RESPONSE && !defect.hot;
     }
-    mark(&ratios, 1e-4, [true, true], |pixel| defects[pixel].odd_response = !defects[pixel].dead);
+    mark(&ratios, 1e-4, [true, true], |pixel| {
+        defects[pixel].odd_response = !defects[pixel].hot && !defects[pixel].dead
+    });
 }
 
 /// Mean of the values below forty times their mean: few extreme ones do not move it.
@@ -365,7 +384,7 @@ fn transfer_of(stacks: &mut [Measured<'_>]) -> Option<TransferFit> {
 /// Moments of a stack for the photon transfer.
 fn transfer_point(measured: &Measured<'_>, offset_variance: f64) -> TransferPoint {
     let moments = &measured.moments;
-    let rounding = rounding_of_mean(moments.total[0]);
+    let rounding = rounding_of_mean(moments.mean, moments.total[0]);
     let offset = offset_variance / moments.frames as f64;
     let mean_sigma = sqrt(moments.mean_sigma * moments.mean_sigma + rounding * rounding + offset);
     let noise = RoundedNoise {
@@ -513,24 +532,33 @@ impl Fit<'_> {
         }
     }
 
-    /// Temporal noise of rows and columns, DN, pooled over all stacks that are used.
+    /// Temporal noise of rows and columns, DN, pooled over the stacks without light.
     fn line_noise(&self) -> [Finding; 2] {
-        let pooled = |of: fn(&StackMoments) -> Variance| {
-            let (mut sum, mut weights) = (0.0, 0.0);
-            for measured in self.stacks.iter().filter(|measured| measured.shows_offsets()) {
-                let [variance, sigma] = of(&measured.moments);
-                if sigma > 0.0 {
-                    sum += variance / (sigma * sigma);
-                    weights += 1.0 / (sigma * sigma);
-                }
-            }
-            if weights > 0.0 {
-                Finding::root_of_variance([sum / weights, 1.0 / sqrt(weights)])
-            } else {
-                Finding::missing(NEEDS_NOISE)
-            }
-        };
-        [pooled(|moments| moments.row), pooled(|moments| moments.column)]
+        let [columns, rows] = [self.frames.columns, self.frames.rows].map(|length| length as f64);
+        [
+            self.pooled_line_noise(|moments| moments.row, columns, rows),
+            self.pooled_line_noise(|moments| moments.column, rows, columns),
+        ]
+    }
+
+    /// Pools the noise of `lines` rows or columns of a length.
+    fn pooled_line_noise(&self, of: fn(&StackMoments) -> Variance, length: f64, lines: f64) -> Finding {
+        let shown = self.stacks.iter().filter(|measured| measured.shows_offsets());
+        let stacks: Vec<&StackMoments> = shown.map(|measured| &measured.moments).collect();
+        if stacks.is_empty() {
+            return Finding::missing(NEEDS_NOISE);
+        }
+        let (mut variance, mut weights) = (0.0_f64, 0.0);
+        // Weights by the expected scatter of a mean square; those by the found one would favour low ones.
+        for _ in 0..3 {
+            let weight = |moments: &StackMoments| {
+                let expected = variance.max(0.0) + moments.pixel[0] / length;
+                (moments.frames as f64 - 1.0) * (lines - 1.0) / (2.0 * expected * expected)
+            };
+            weights = stacks.iter().map(|moments| weight(moments)).sum();
+            variance = stacks.iter().map(|moments| weight(moments) * of(moments)[0]).sum::<f64>() / weights;
+        }
+        Finding::root_of_variance([variance, 1.0 / sqrt(weights)])
     }
 
     /// DSNU1288 of the shortest exposure without light, and its parts of columns and rows, DN.
@@ -573,6 +601,11 @@ impl Fit<'_> {
 
     /// Standard deviation of the dark currents of ordinary pixels, DN/s.
     fn dark_spread(&self) -> Finding {
+        let dark = self.stacks.iter().filter(|measured| measured.kind != "flat" && measured.is_used());
+        let longest = dark.max_by(|a, b| a.stack.time_s.total_cmp(&b.stack.time_s));
+        if longest.is_some_and(|measured| !measured.shows_offsets()) {
+            return Finding::missing(NEEDS_NOISE);
+        }
         let stacks = used_views(&self.stacks, false);
         let pattern = DarkSignal::new(&stacks).and_then(|dark| rise_pattern(&dark, &stacks, &self.good));
         pattern
@@ -672,16 +705,12 @@ impl Fit<'_> {
             let found = flat.moments.pixel[0] - transfer.values[READ_VARIANCE];
             if found < FULL_SHARE * expected {
                 // The median leaves out the pixels that are not full yet.
-                let good = flat.maps.mean.iter().zip(&self.good.is_good);
-                let mut means: Vec<f32> = good.filter(|(_, good)| **good).map(|(mean, _)| *mean).collect();
-                let middle = means.len() / 2;
-                let median = f64::from(*means.select_nth_unstable_by(middle, f32::total_cmp).1);
-                let count = self.good.count() as f64;
-                let sampling = 1.25 * sqrt(flat.moments.total[0] / count);
-                // Medians of means of n frames are whole n-ths of a digital number.
-                let step = 1.0 / (flat.moments.frames as f64 * sqrt(12.0));
-                let rounding = rounding_of_mean(flat.moments.total[0]);
-                let variance = sampling * sampling + step * step + rounding * rounding;
+                let good = flat.maps.mean.iter().zip(&self.good.is_good).filter(|(_, good)| **good);
+                let means: Vec<f64> = good.map(|(mean, _)| f64::from(*mean)).collect();
+                let median = grouped_median(&means, 1.0 / flat.moments.frames as f64);
+                let sampling = 1.25 * sqrt(flat.moments.total[0] / means.len() as f64);
+                let rounding = rounding_of_mean(flat.moments.mean, flat.moments.total[0]);
+                let variance = sampling * sampling + rounding * rounding;
                 sum += median / variance;
                 weights += 1.0 / variance;
             }
@@ -885,5 +914,26 @@ impl Fit<'_> {
             }
         }
         notes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_median_on_steps_is_that_of_the_values_before_rounding() {
+        // Uniform values from 10 to 13 rounded to thirds: their median is 11.5.
+        let values: Vec<f64> =
+            (0..3000).map(|i| (3.0 * (10.0 + f64::from(i) / 1000.0)).round() / 3.0).collect();
+        assert!((grouped_median(&values, 1.0 / 3.0) - 11.5).abs() < 0.01);
+        assert!((grouped_median(&[5.0; 9], 1.0) - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn lines_leave_an_image_and_its_pixels_stay() {
+        let good = GoodPixels { columns: 30, rows: 20, is_good: vec![true; 600] };
+        let image: Vec<f32> = (0..600).map(|i| (i / 30) as f32 * 2.0 + (i % 30) as f32 * 3.0).collect();
+        assert!(without_lines(&image, &good).iter().all(|value| value.abs() < 1e-3));
     }
 }

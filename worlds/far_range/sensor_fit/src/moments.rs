@@ -103,7 +103,8 @@ impl GoodPixels {
 }
 
 /// Sums of squares of an image about its mean: of the means of rows, of the means of columns, and of the
-/// rest. A balanced two-way analysis of variance; with few pixels left out, its means are those of the good pixels.
+/// rest. A balanced two-way analysis of variance; with few pixels left out, its means are those of the good
+/// pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LineVariances {
     /// Mean squares of rows, columns and the rest.

@@ -119,9 +119,15 @@ pub(crate) fn unrounded_variance(noise: &RoundedNoise) -> Option<[f64; 2]> {
 
 /// Standard deviation of the error of a mean by the rounding, DN: the first harmonic, for a level at an
 /// unknown fraction of a digital number and numbers with the given variance.
-pub(crate) fn rounding_of_mean(variance: f64) -> f64 {
+pub(crate) fn rounding_of_mean(mean: f64, variance: f64) -> f64 {
     let pi = std::f64::consts::PI;
-    exp(-2.0 * pi * pi * (variance - ROUNDING_VARIANCE).max(0.0)) / (pi * std::f64::consts::SQRT_2)
+    let before = if variance > SMOOTH_VARIANCE {
+        variance - ROUNDING_VARIANCE
+    } else {
+        let (_, sigma) = level_and_noise(mean, variance);
+        sigma * sigma
+    };
+    exp(-2.0 * pi * pi * before) / (pi * std::f64::consts::SQRT_2)
 }
 
 #[cfg(test)]

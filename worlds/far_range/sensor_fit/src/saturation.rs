@@ -2,11 +2,11 @@
 
 use crate::moments::StackMoments;
 
-/// Share of the samples at the largest digital number from which the cut changes the variance by 1e-3.
-const MAX_SHARE_AT_TOP: f64 = 1e-4;
+/// Share of the samples at an end of the converter from which the cut changes the variance by 1e-3.
+pub(crate) const MAX_SHARE_OF_GOOD: f64 = 1e-4;
 
-/// Share of the samples at 0 from which a stack is cut.
-const MAX_SHARE_AT_ZERO: f64 = 1e-4;
+/// The same before defects are left out, which may lie at the ends.
+pub(crate) const MAX_SHARE_OF_ALL: f64 = 0.05;
 
 /// Share of the largest variance below which a brighter level is beyond saturation.
 const BEYOND_SHARE: f64 = 0.9;
@@ -51,15 +51,20 @@ pub(crate) fn bits_of_full_scale(dn: u16) -> Option<u8> {
 }
 
 /// Returns the use of each level of light; `bias` is the mean without light, `top` the largest number of all
-/// stacks.
-pub(crate) fn states_of_levels(levels: &[(f64, &StackMoments)], bias: f64, top: u16) -> Vec<StackState> {
+/// stacks, and `max_share` the largest share of samples at an end of the converter.
+pub(crate) fn states_of_levels(
+    levels: &[(f64, &StackMoments)],
+    bias: f64,
+    top: u16,
+    max_share: f64,
+) -> Vec<StackState> {
     let is_cut =
-        |moments: &StackMoments| moments.share_at_top > MAX_SHARE_AT_TOP && bits_of_full_scale(top).is_some();
+        |moments: &StackMoments| moments.share_at_top > max_share && bits_of_full_scale(top).is_some();
     let mut states: Vec<StackState> = levels
         .iter()
         .map(|(_, moments)| match moments {
             moments if is_cut(moments) => StackState::Converter,
-            moments if moments.share_at_zero > MAX_SHARE_AT_ZERO => StackState::AtZero,
+            moments if moments.share_at_zero > max_share => StackState::AtZero,
             _ => StackState::Used,
         })
         .collect();
@@ -114,7 +119,7 @@ mod tests {
     fn states(levels: &[StackMoments], top: u16) -> Vec<StackState> {
         let levels: Vec<(f64, &StackMoments)> =
             levels.iter().enumerate().map(|(index, level)| (1.0 + index as f64, level)).collect();
-        states_of_levels(&levels, 100.0, top)
+        states_of_levels(&levels, 100.0, top, MAX_SHARE_OF_GOOD)
     }
 
     #[test]

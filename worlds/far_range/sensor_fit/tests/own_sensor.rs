@@ -1,6 +1,6 @@
 //! Figures of sensors whose frames the simulator makes: uniform light, its own charge and readout.
 
-use sensor_fit::{Finding, FrameStack, SensorFigures, SensorFrames, fit_sensor};
+use boresight_sensor_fit::{Finding, FrameStack, SensorFigures, SensorFrames, fit_sensor};
 use sim::draw::ExpectedImage;
 use sim::sensor::{
     ExposureInterval, FixedPatternConfig, FrameCharge, HotPixelConfig, LineNoiseConfig, Sensor, SensorConfig,
