@@ -89,11 +89,11 @@ pub fn fit_sensor(frames: &SensorFrames) -> Result<SensorFigures, SensorFitError
     // Moments of all pixels find the defects; those of the good pixels give the figures.
     let mut stacks = measure(frames, &good, top);
     check_order(&stacks)?;
-    let defects = find_defects(&stacks, &good);
+    let (defects, shows_dead) = find_defects(&stacks, &good);
     good.is_good = defects.iter().map(|defect| !defect.is_any()).collect();
     remeasure(&mut stacks, &good, top);
     let transfer = transfer_of(&mut stacks);
-    Ok(Fit { frames, shifted_bits, top, good, stacks, defects, transfer }.figures())
+    Ok(Fit { frames, shifted_bits, top, good, stacks, defects, shows_dead, transfer }.figures())
 }
 
 /// Returns frames with the numbers of the converter instead of shifted ones.
@@ -214,10 +214,11 @@ fn used_views<'a>(stacks: &'a [Measured<'_>], is_flat: bool) -> Vec<MeasuredStac
     wanted.map(Measured::view).collect()
 }
 
-/// Finds hot, dead, odd and noisy pixels.
-fn find_defects(stacks: &[Measured<'_>], good: &GoodPixels) -> Vec<Defect> {
+/// Finds hot, dead, odd and noisy pixels; false with them if dead ones do not stand out of the noise.
+fn find_defects(stacks: &[Measured<'_>], good: &GoodPixels) -> (Vec<Defect>, bool) {
     let pixels = good.is_good.len();
     let mut defects = vec![Defect::default(); pixels];
+    let mut shows_dead = false;
     let dark_stacks = used_views(stacks, false);
     let flats = used_views(stacks, true);
     let dark = DarkSignal::new(&dark_stacks);
@@ -236,7 +237,7 @@ fn find_defects(stacks: &[Measured<'_>], good: &GoodPixels) -> Vec<Defect> {
         }
     }
     if let (Some(dark), false) = (&dark, flats.is_empty()) {
-        mark_responses(dark, &flats, good, &mut defects);
+        shows_dead = mark_responses(dark, &flats, good, &mut defects);
     }
     for measured in stacks.iter().filter(|measured| measured.is_used()) {
         let limit = noisy_limit(measured.stack.frames.len() as f64 - 1.0);
@@ -246,7 +247,7 @@ fn find_defects(stacks: &[Measured<'_>], good: &GoodPixels) -> Vec<Defect> {
             defect.noisy |= f64::from(*variance) > limit * mean && !defect.hot;
         }
     }
-    defects
+    (defects, shows_dead)
 }
 
 /// Returns an image without the means of its rows and columns.
@@ -283,8 +284,14 @@ fn grouped_median(values: &[f64], step: f64) -> f64 {
     centre + step * ((0.5 * sorted.len() as f64 - below) / inside - 0.5)
 }
 
-/// Marks dead pixels and those of an odd response.
-fn mark_responses(dark: &DarkSignal, flats: &[MeasuredStack<'_>], good: &GoodPixels, defects: &mut [Defect]) {
+/// Marks dead pixels and those of an odd response. Returns false if a pixel without response does not stand
+/// out of the noise.
+fn mark_responses(
+    dark: &DarkSignal,
+    flats: &[MeasuredStack<'_>],
+    good: &GoodPixels,
+    defects: &mut [Defect],
+) -> bool {
     let sum = response_sum(dark, flats);
     let mut fitted = good.clone();
     let mut ratios = sum.clone();
@@ -296,13 +303,15 @@ fn mark_responses(dark: &DarkSignal, flats: &[MeasuredStack<'_>], good: &GoodPix
             fitted.is_good[pixel] = (0.5..1.5).contains(ratio);
         }
     }
+    // A pixel without response must lie beyond the noise of the others to be seen.
+    let [low, high] = ordinary_limits(ratios.iter().copied(), ratios.len(), 1e-4);
     for (defect, ratio) in defects.iter_mut().zip(&ratios) {
+        let ratio = f64::from(*ratio);
         // A hot pixel that fills its well has no response left, but is not dead.
-        defect.dead = f64::from(*ratio) < DEAD_RESPONSE && !defect.hot;
+        defect.dead = ratio < DEAD_RESPONSE.min(low) && !defect.hot;
+        defect.odd_response = (ratio < low || ratio > high) && !defect.hot && !defect.dead;
     }
-    mark(&ratios, 1e-4, [true, true], |pixel| {
-        defects[pixel].odd_response = !defects[pixel].hot && !defects[pixel].dead
-    });
+    low > 0.0
 }
 
 /// Mean of the values below forty times their mean: few extreme ones do not move it.
@@ -408,6 +417,8 @@ struct Fit<'a> {
     good: GoodPixels,
     stacks: Vec<Measured<'a>>,
     defects: Vec<Defect>,
+    /// True if a pixel without response stands out of the noise.
+    shows_dead: bool,
     transfer: Option<TransferFit>,
 }
 
@@ -430,6 +441,12 @@ impl Fit<'_> {
             (Some(gain), finding) => finding.times(gain),
             (None, _) => Finding::missing(NEEDS_GAIN),
         };
+        // Flats without a gain are not known to be below saturation.
+        let of_light = |finding: Finding| match finding {
+            missing @ Finding::Missing(_) => missing,
+            _ if gain_e.is_none() => Finding::missing(NEEDS_GAIN),
+            finding => finding,
+        };
         let read_noise_dn = self.read_noise_dn();
         let [row, column] = self.line_noise();
         let [dsnu, column_offset, row_offset] = self.offset_patterns();
@@ -451,14 +468,14 @@ impl Fit<'_> {
             dsnu_e: electrons(dsnu),
             column_offset_e: electrons(column_offset),
             row_offset_e: electrons(row_offset),
-            prnu_fraction: self.response_spread(),
+            prnu_fraction: of_light(self.response_spread()),
             saturation_e: self.electrons_of_level(&saturation_dn, gain_e),
             full_well_e,
-            saturation_dn,
-            largest_linear_dn,
+            saturation_dn: of_light(saturation_dn),
+            largest_linear_dn: of_light(largest_linear_dn),
             end_e: self.end_e(gain_e),
             limit,
-            linearity_error_percent: self.linearity(),
+            linearity_error_percent: of_light(self.linearity()),
             non_linearity: self.non_linearity(gain_e),
             light_drift: drift,
             defects: counts,
@@ -504,8 +521,8 @@ impl Fit<'_> {
         // Noise that does not rise with the signal is not that of electrons.
         if p < 5.0 * sigma {
             return Finding::missing(format!(
-                "the noise does not rise with the signal ({p:.2e} ± {sigma:.1e} DN per electron): brighter \
-                 flats of unprocessed frames determine it"
+                "the noise does not rise with the signal ({p:.2e} ± {sigma:.1e} DN per electron), as in saturated \
+                 or processed frames: unprocessed flats below saturation determine it"
             ));
         }
         Finding::Value { value: 1.0 / p, sigma: sigma / (p * p) }
@@ -608,8 +625,12 @@ impl Fit<'_> {
         }
         let stacks = used_views(&self.stacks, false);
         let pattern = DarkSignal::new(&stacks).and_then(|dark| rise_pattern(&dark, &stacks, &self.good));
-        pattern
-            .map_or_else(|| Finding::missing(NEEDS_DARK), |pattern| Finding::root_of_variance(pattern.pixel))
+        let Some(pattern) = pattern else { return Finding::missing(NEEDS_DARK) };
+        // The longest exposure, which determines the rise, sees it by the slope of the response.
+        let slope = longest.zip(self.transfer.as_ref()).map_or(1.0, |(longest, transfer)| {
+            slope_at(&transfer.values, transfer.values[DARK] * longest.stack.time_s)
+        });
+        Finding::root_of_variance(pattern.over(slope.max(0.05)).pixel)
     }
 
     /// PRNU1288 of all flats that are used.
@@ -810,7 +831,7 @@ impl Fit<'_> {
     fn defect_counts(&self, gain: Option<[f64; 2]>) -> DefectCounts {
         let count = |is: fn(&Defect) -> bool| self.defects.iter().filter(|defect| is(defect)).count();
         let columns = dead_columns(&self.defects, self.frames.columns);
-        let has_response = !used_views(&self.stacks, true).is_empty() && self.has_dark();
+        let has_response = self.shows_dead;
         let dark = DarkSignal::new(&used_views(&self.stacks, false));
         let has_rise = dark.is_some_and(|dark| dark.rise.is_some());
         let in_columns = |(pixel, defect): &(usize, &Defect)| {
@@ -889,6 +910,13 @@ impl Fit<'_> {
                  linearity does not improve on it",
                 100.0 * drift
             ));
+        }
+        if self.of_kind("flat").filter(|flat| flat.is_used()).count() == 1 {
+            notes.push(
+                "one flat level is used: the figures assume that it is below saturation and the response a line; \
+                 more levels show both"
+                    .to_owned(),
+            );
         }
         for measured in self.stacks.iter().filter(|measured| measured.state == StackState::AtZero) {
             notes.push(format!(
