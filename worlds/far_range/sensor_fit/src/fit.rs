@@ -865,9 +865,9 @@ impl Fit<'_> {
             };
             let is_longer = |of: &&&Measured<'_>| of.stack.time_s > shortest.stack.time_s;
             let longer = others.iter().filter(is_longer);
-            let uncut = longer.clone().filter(|of| f64::from(of.maps.mean[pixel]) < limit);
+            let mut uncut = longer.clone().filter(|of| f64::from(of.maps.mean[pixel]) < limit);
             // A pixel that is cut in every stack has at least the current of the shortest.
-            let current = uncut.last().or_else(|| longer.clone().next()).map(|of| rise(&of))?;
+            let current = uncut.next_back().or_else(|| longer.clone().next()).map(|of| rise(&of))?;
             currents.push(gain * current);
         }
         currents.retain(|current| *current > 0.0);
