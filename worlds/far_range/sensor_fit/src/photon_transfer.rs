@@ -341,9 +341,9 @@ mod tests {
     #[test]
     fn exact_moments_give_every_parameter() {
         let fit = fit_transfer(&points(), 0.0).unwrap();
-        for parameter in 0..PARAMETERS {
+        for (parameter, truth) in TRUTH.iter().enumerate() {
             let [value, sigma] = fit.parameter(parameter).unwrap();
-            assert!((value - TRUTH[parameter]).abs() < 1e-3 * sigma, "{parameter}: {value} ± {sigma}");
+            assert!((value - truth).abs() < 1e-3 * sigma, "{parameter}: {value} ± {sigma}");
         }
         let [gain, sigma] = fit.derived(|values| Some(1.0 / values[INVERSE_GAIN])).unwrap();
         assert!((gain - 2.5).abs() < 1e-4 && sigma < 0.01, "{gain} ± {sigma}");

@@ -1,5 +1,7 @@
 //! Figures of sensors whose frames the simulator makes: uniform light, its own charge and readout.
 
+#![allow(clippy::unwrap_used, reason = "tests and their helpers fail by panicking")]
+
 use boresight_sensor_fit::{Finding, FrameStack, SensorFigures, SensorFrames, fit_sensor};
 use sim::draw::ExpectedImage;
 use sim::sensor::{
