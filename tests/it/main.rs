@@ -14,6 +14,7 @@ mod bounds;
 mod calibration;
 mod camera_calibration;
 mod camera_fit;
+mod camera_sensor;
 mod cameras;
 mod docking;
 mod docking_artefacts;

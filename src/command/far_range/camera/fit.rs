@@ -7,11 +7,12 @@ use clap::Args;
 use files::{AtomicFile, Failure};
 use hifitime::Epoch;
 use serde_json::json;
-use twin::{FrameSet, Origin, TwinCamera, camera_toml};
+use twin::{FrameSet, MeasuredSensor, Origin, TwinCamera, camera_toml};
 
 use super::fit_text::{document, fit_text};
 use super::images::{images, read_frames};
 use super::pages::write_fit_page;
+use super::sensor_file::SensorSource;
 use crate::command::Answer;
 use crate::command::options::{exposure, number, output_path, time};
 use crate::command::output::Output;
@@ -55,6 +56,10 @@ pub(in crate::command) struct GuessArguments {
     /// Exposure time of the frames, s, 1e-6 to 1000: for the brightness of stars per second
     #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = exposure)]
     pub(super) exposure: f64,
+    /// Sensor file of `boresight camera sensor`: its gain, bias, noise and dark current are those of the
+    /// camera
+    #[arg(long, value_name = "FILE")]
+    sensor: Option<PathBuf>,
 }
 
 impl GuessArguments {
@@ -65,6 +70,14 @@ impl GuessArguments {
             pixel_um: [self.pixel_um, self.pixel_height_um.unwrap_or(self.pixel_um)],
             time: self.time,
         }
+    }
+
+    /// Reads the sensor file; `None` without the option.
+    ///
+    /// # Errors
+    /// A [`Failure`] with the location of the first mistake in it.
+    pub(super) fn sensor(&self) -> Result<Option<SensorSource>, Failure> {
+        self.sensor.as_deref().map(SensorSource::read).transpose()
     }
 
     pub(super) fn origin<'a>(&self, directory: &'a Path) -> Origin<'a> {
@@ -91,12 +104,14 @@ pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, F
         super::refuse_existing(out)?;
     }
     check_option(arguments.report.as_ref())?;
+    let sensor = arguments.guess.sensor()?;
     let frames = read_frames(&paths, output)?;
     let Some(set) = fitted(&arguments.directory, frames, &arguments.guess.first_guess(), output)? else {
         return Ok(Answer::No);
     };
     let mut text = fit_text(&set.fit);
-    let twin = TwinCamera::of(&set);
+    let measured = measured_sensor(&set, sensor.as_ref(), arguments.guess.exposure)?;
+    let twin = TwinCamera::of(&set, measured);
     if let Some(path) = &arguments.report {
         write_fit_page(&set, &twin, &arguments.directory, path)?;
         text.push_str(&format!("\nreport in {}", path.display()));
@@ -129,4 +144,26 @@ pub(super) fn fitted(
         }
         Err(error) => Err(Failure::Usage(format!("{}: {error}", directory.display()))),
     }
+}
+
+/// Returns a measured sensor with the light of the sky in the frames: their background above bias and dark
+/// current.
+///
+/// # Errors
+/// A [`Failure`] for tables that cannot be written.
+pub(super) fn measured_sensor(
+    set: &FrameSet,
+    source: Option<&SensorSource>,
+    exposure_s: f64,
+) -> Result<Option<MeasuredSensor>, Failure> {
+    let Some(source) = source else { return Ok(None) };
+    let sensor = &source.sensor;
+    let background_dn = set.fit.background_dn;
+    let signal_e_per_s = (background_dn - sensor.bias_dn) * sensor.gain_e_per_dn / exposure_s;
+    let sky_e_per_s = (signal_e_per_s - sensor.dark_current_e_per_s).clamp(0.0, 1e6);
+    let origin = format!(
+        "the background of the frames, {background_dn:.2} DN in {exposure_s} s, above bias and dark current"
+    );
+    let tables = source.tables(sky_e_per_s, &origin)?;
+    Ok(Some(MeasuredSensor { gain_e_per_dn: sensor.gain_e_per_dn, tables }))
 }

@@ -11,6 +11,10 @@ mod pages;
 #[cfg(not(feature = "report"))]
 #[path = "no_pages.rs"]
 mod pages;
+mod sensor;
+mod sensor_file;
+mod sensor_text;
+mod stack_folders;
 mod twin;
 
 use std::path::Path;
@@ -38,6 +42,12 @@ pub(in crate::command) enum CameraCommand {
     Import(import::ImportArguments),
     /// Write a camera as a calibration for OpenCV, ROS or Kalibr
     Export(export::CameraExportArguments),
+    /// Determine gain, noise, dark current and more of a sensor from bias, dark and flat frames
+    ///
+    /// Images are grey FITS, PNG, TIFF or OpenEXR with the numbers of the converter. Of each kind, two frames
+    /// or more: bias frames in one folder; dark and flat frames in a folder per exposure time, named by it
+    /// (`0.5s`), or FITS with EXPTIME or EXPOSURE. Figures follow EMVA Standard 1288.
+    Sensor(sensor::SensorArguments),
 }
 
 /// Refuses an output file that exists, before the work begins.
@@ -53,5 +63,6 @@ pub(in crate::command) fn camera(command: &CameraCommand, output: &Output) -> Re
         CameraCommand::Fit(arguments) => fit::fit(arguments, output),
         CameraCommand::Import(arguments) => import::import(arguments, output),
         CameraCommand::Export(arguments) => export::export(arguments, output),
+        CameraCommand::Sensor(arguments) => sensor::sensor(arguments, output),
     }
 }

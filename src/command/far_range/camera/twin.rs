@@ -10,10 +10,11 @@ use serde_json::json;
 use twin::likeness::compare;
 use twin::{FrameSet, TwinCamera, camera_toml, pointings, scenario_text, twin_frames};
 
-use super::fit::{GuessArguments, fitted};
+use super::fit::{GuessArguments, fitted, measured_sensor};
 use super::fit_text::fit_text;
 use super::images::{images, read_frames};
 use super::refuse_existing;
+use super::sensor_file::SensorSource;
 use crate::command::Answer;
 use crate::command::options::output_path;
 use crate::command::output::Output;
@@ -40,14 +41,15 @@ pub(in crate::command) fn twin(arguments: &TwinArguments, output: &Output) -> Re
     for file in [scenario, &attitudes] {
         refuse_existing(file)?;
     }
-    let frames = read_frames(&paths, output)?;
     let guess = &arguments.guess;
+    let sensor = guess.sensor()?;
+    let frames = read_frames(&paths, output)?;
     let Some(set) = fitted(&arguments.directory, frames, &guess.first_guess(), output)? else {
         return Ok(Answer::No);
     };
     let aem = pointings(&set.fit, guess.time);
     AtomicFile::with_text(&attitudes, &aem.to_kvn())?.commit_new()?;
-    let written = corrected_scenario(arguments, &set, &attitudes, output)
+    let written = corrected_scenario(arguments, &set, sensor.as_ref(), &attitudes, output)
         .and_then(|text| Ok(AtomicFile::with_text(scenario, &text)?.commit_new()?));
     if let Err(failure) = written {
         // Attitudes without a scenario are of no use, and in the way of the next attempt.
@@ -72,6 +74,7 @@ pub(in crate::command) fn twin(arguments: &TwinArguments, output: &Output) -> Re
 fn corrected_scenario(
     arguments: &TwinArguments,
     set: &FrameSet,
+    sensor: Option<&SensorSource>,
     attitudes: &Path,
     output: &Output,
 ) -> Result<String, Failure> {
@@ -81,7 +84,8 @@ fn corrected_scenario(
     let text_of = |twin: &TwinCamera| {
         scenario_text(&set.fit, &camera_toml(&set.fit, twin, &origin), &name, guess.time, guess.exposure)
     };
-    let mut twin = TwinCamera::of(set);
+    let measured = measured_sensor(set, sensor, guess.exposure)?;
+    let mut twin = TwinCamera::of(set, measured);
     for _ in 0..MAX_CORRECTIONS {
         let folder = arguments.out.parent().map(Path::to_path_buf).unwrap_or_default();
         let source = ScenarioSource::parse("twin".to_owned(), folder, arguments.out.clone(), text_of(&twin))?;

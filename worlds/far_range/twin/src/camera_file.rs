@@ -34,7 +34,10 @@ pub fn camera_toml(fit: &CameraFit, twin: &TwinCamera, origin: &Origin<'_>) -> S
         format_utc(origin.time),
     );
     text.push_str(&geometry_table(fit));
-    text.push_str(&sensor_table(fit, twin, origin.exposure_s));
+    match &twin.sensor {
+        Some(sensor) => text.push_str(&format!("{}\n\n", sensor.tables.trim_end())),
+        None => text.push_str(&sensor_table(fit, twin, origin.exposure_s)),
+    }
     text.push_str(&optics_tables(twin));
     text.push_str(&radiometry_table(fit, twin, origin.exposure_s));
     text

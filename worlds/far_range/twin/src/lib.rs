@@ -18,5 +18,5 @@ mod twin_frames;
 pub use camera_file::{Origin, camera_toml};
 pub use frame_set::FrameSet;
 pub use scenario::{pointings, scenario_text};
-pub use twin_camera::TwinCamera;
+pub use twin_camera::{MeasuredSensor, TwinCamera};
 pub use twin_frames::twin_frames;

@@ -37,7 +37,9 @@ const ASSUMED_WIDTH_PX: f64 = 0.8;
 pub struct TwinCamera {
     /// Bits of the digital numbers, 8 to 16: the fewest that hold the saturation level.
     pub bit_depth: u8,
-    /// Electrons per DN; assumed.
+    /// Measured sensor; `None`: the values below are its own.
+    pub sensor: Option<MeasuredSensor>,
+    /// Electrons per DN; assumed where no sensor was measured.
     pub gain_e_per_dn: f64,
     /// Level of the background, DN.
     pub bias_dn: f64,
@@ -60,6 +62,15 @@ pub struct TwinCamera {
     pub zero_point_dn: Option<[f64; 2]>,
 }
 
+/// A sensor that was measured from bias, dark and flat frames.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredSensor {
+    /// Electrons per DN.
+    pub gain_e_per_dn: f64,
+    /// Tables `[sensor]` of a scenario, with comments.
+    pub tables: String,
+}
+
 /// Hot pixels above a limit: P(height > h) = (limit/h)^index.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HotPixels {
@@ -72,8 +83,8 @@ pub struct HotPixels {
 }
 
 impl TwinCamera {
-    /// Measures the frames.
-    pub fn of(set: &FrameSet) -> Self {
+    /// Measures the frames; `sensor` replaces what they say of the detector.
+    pub fn of(set: &FrameSet, sensor: Option<MeasuredSensor>) -> Self {
         let fit = &set.fit;
         let backgrounds = set.backgrounds(fit.noise_dn);
         let (row_dn, _) = offsets(&backgrounds, |frame| &frame.row_offsets);
@@ -91,7 +102,11 @@ impl TwinCamera {
         let largest_noise_dn = noise_dn.max(row_dn).max(column_dn).max(fixed_column_dn);
         Self {
             bit_depth,
-            gain_e_per_dn: (ASSUMED_FULL_SCALE_E / fit.saturation_dn).min(MAX_NOISE_E / largest_noise_dn),
+            gain_e_per_dn: sensor.as_ref().map_or(
+                (ASSUMED_FULL_SCALE_E / fit.saturation_dn).min(MAX_NOISE_E / largest_noise_dn),
+                |sensor| sensor.gain_e_per_dn,
+            ),
+            sensor,
             bias_dn: mean(&levels).unwrap_or(fit.background_dn).max(0.0),
             read_noise_dn: (noise_dn * noise_dn - ROUNDING_VARIANCE).max(0.0).sqrt(),
             row_dn,
