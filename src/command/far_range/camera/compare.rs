@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use twin::likeness::{Comparison, Likeness, compare as compare_sets};
 use twin::{FrameSet, twin_frames};
 
-use super::fit::fitted;
+use super::fit::{fitted, known_guess};
 use super::images::{images, read_frames};
 use super::pages::write_likeness_page;
 use crate::command::Answer;
@@ -20,7 +20,7 @@ use crate::command::options::output_path;
 use crate::command::output::Output;
 use crate::command::report::check_option;
 
-/// Largest relative error of the field of the twin's scenario.
+/// Largest relative error of the field that the twin's scenario states for the camera.
 const TOLERANCE: f64 = 0.05;
 
 #[derive(Debug, Args)]
@@ -41,11 +41,14 @@ pub(in crate::command) fn compare(arguments: &CompareArguments, output: &Output)
     let paths = images(&arguments.directory)?;
     let source = ScenarioSource::read(&arguments.twin.to_string_lossy())?;
     let scenario: &FarRangeScenario = source.typed("boresight compare")?;
-    let guess = first_guess(scenario, &arguments.twin)?;
+    let of_twin = twin_guess(scenario, &arguments.twin)?;
+    let of_camera = FirstGuess { tolerance: TOLERANCE, ..of_twin };
     let frames = read_frames(&paths, output)?;
     let simulated = twin_frames(scenario, &source.folder)?;
-    let Some(camera) = fitted(&arguments.directory, frames, &guess, output)? else { return Ok(Answer::No) };
-    let Some(twin) = fitted(&arguments.twin, simulated, &guess, output)? else { return Ok(Answer::No) };
+    let Some(camera) = fitted(&arguments.directory, frames, &of_camera, output)? else {
+        return Ok(Answer::No);
+    };
+    let Some(twin) = fitted(&arguments.twin, simulated, &of_twin, output)? else { return Ok(Answer::No) };
     let found = compare_sets(&camera, &twin);
     if let Some(path) = &arguments.report {
         write_likeness_page(&camera, &twin, &found, &arguments.directory, path)?;
@@ -58,21 +61,16 @@ pub(in crate::command) fn compare(arguments: &CompareArguments, output: &Output)
     Ok(if is_alike { Answer::Yes } else { Answer::No })
 }
 
-/// Returns what the scenario of the twin says of the camera.
-fn first_guess(scenario: &FarRangeScenario, path: &Path) -> Result<FirstGuess, Failure> {
-    let camera = &scenario.camera;
-    let (focal_px, _) = camera.focal_length_px();
-    let half_field = libm::atan(0.5 * camera.columns as f64 / focal_px);
+/// Returns what the scenario of the twin says of its camera.
+///
+/// # Errors
+/// [`Failure::Usage`] for a time that cannot be read.
+fn twin_guess(scenario: &FarRangeScenario, path: &Path) -> Result<FirstGuess, Failure> {
     let start = scenario.schedule.first().map_or("", |group| group.start_utc.as_str());
     let time = parse_utc(start).map_err(|expected| {
         Failure::Usage(format!("{}: schedule[0].start_utc is `{start}`, expected {expected}", path.display()))
     })?;
-    Ok(FirstGuess {
-        field_deg: 2.0 * half_field.to_degrees(),
-        tolerance: TOLERANCE,
-        pixel_um: [camera.pixel_width_um, camera.pixel_height_um],
-        time,
-    })
+    Ok(known_guess(&scenario.camera, time))
 }
 
 /// Returns the comparison as JSON.

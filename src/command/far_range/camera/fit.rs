@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use camera_fit::{FirstGuess, FitError, SkyFrame, fit_camera};
 use clap::Args;
+use contract::Camera;
 use files::{AtomicFile, Failure};
 use hifitime::Epoch;
 use serde_json::json;
@@ -143,6 +144,21 @@ pub(super) fn fitted(
             Ok(None)
         }
         Err(error) => Err(Failure::Usage(format!("{}: {error}", directory.display()))),
+    }
+}
+
+/// Largest relative error of the field of a camera whose focal length is known.
+const KNOWN_TOLERANCE: f64 = 0.005;
+
+/// Returns the first guess for frames of a known camera.
+pub(super) fn known_guess(camera: &Camera, time: Epoch) -> FirstGuess {
+    let (focal_px, _) = camera.focal_length_px();
+    let half_field = libm::atan(0.5 * camera.columns as f64 / focal_px);
+    FirstGuess {
+        field_deg: 2.0 * half_field.to_degrees(),
+        tolerance: KNOWN_TOLERANCE,
+        pixel_um: [camera.pixel_width_um, camera.pixel_height_um],
+        time,
     }
 }
 

@@ -10,7 +10,7 @@ use serde_json::json;
 use twin::likeness::compare;
 use twin::{FrameSet, TwinCamera, camera_toml, pointings, scenario_text, twin_frames};
 
-use super::fit::{GuessArguments, fitted, measured_sensor};
+use super::fit::{GuessArguments, fitted, known_guess, measured_sensor};
 use super::fit_text::fit_text;
 use super::images::{images, read_frames};
 use super::refuse_existing;
@@ -90,7 +90,7 @@ fn corrected_scenario(
         let folder = arguments.out.parent().map(Path::to_path_buf).unwrap_or_default();
         let source = ScenarioSource::parse("twin".to_owned(), folder, arguments.out.clone(), text_of(&twin))?;
         let frames = twin_frames(source.typed("boresight twin")?, &source.folder)?;
-        match fit_camera(&frames, &guess.first_guess()) {
+        match fit_camera(&frames, &known_guess(&set.fit.camera, guess.time)) {
             Ok(fit) => {
                 let is_changed = twin.correct(&compare(set, &FrameSet { frames, fit }));
                 if !is_changed {

@@ -105,7 +105,9 @@ fn findings(fit: &CameraFit) -> Vec<Finding> {
         ));
     }
     if !fit.unsolved.is_empty() {
-        let text = format!("{} of the frames have no attitude and do not take part.", fit.unsolved.len());
+        let all = fit.frames.len() + fit.unsolved.len();
+        let text =
+            format!("Frames without an attitude, which do not take part: {} of {all}.", fit.unsolved.len());
         findings.push(Finding::new(Grade::Fair, "Frames", text));
     }
     findings
@@ -117,12 +119,21 @@ fn parameters(fit: &CameraFit) -> Section {
     for (term, sigma, is_determined) in &fit.sigmas {
         table.push([
             term.name().to_owned(),
-            format!("{:.6e}", term.parameter(&fit.camera)),
+            value_text(term.parameter(&fit.camera), *sigma),
             format!("{sigma:.1e}"),
             if *is_determined { "yes" } else { "no" }.to_owned(),
         ]);
     }
     Section::new("parameters", "Parameters").table(table)
+}
+
+/// Returns a value to two digits of its error; a small one with its power of ten.
+fn value_text(value: f64, sigma: f64) -> String {
+    if value.abs() < 1e-2 {
+        return format!("{value:.3e}");
+    }
+    let digits = (1.0 - libm::log10(sigma).floor()).clamp(0.0, 9.0) as usize;
+    format!("{value:.digits$}")
 }
 
 /// Returns the section of the frames: pictures of the first ones, a table of all.
@@ -201,8 +212,8 @@ fn residuals(fit: &CameraFit) -> Section {
     }
     let rows = fit.camera.rows as f64;
     let layout = Layout::new(
-        Axis::titled("column, px").range([0.0, fit.camera.columns as f64]),
-        Axis::titled("row, px").range([rows, 0.0]).same_scale_as("x"),
+        Axis::titled("column, px").range([0.0, fit.camera.columns as f64]).constrain_domain(),
+        Axis::titled("row, px").range([rows, 0.0]).same_scale_as("x").constrain_domain(),
     );
     let field = Chart::new(
         format!(

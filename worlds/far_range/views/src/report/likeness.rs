@@ -58,14 +58,15 @@ pub fn likeness_page(
 /// Returns the finding on a figure.
 fn finding(figure: &Likeness) -> Finding {
     let [name, unit, .., difference, limit, _, visible] = likeness_cells(figure);
+    let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
     if figure.is_indistinguishable() {
         return Finding::new(
             Grade::Good,
             capital(&name),
-            format!("No difference is seen; one of {visible} {unit} would be."),
+            format!("No difference is seen; one of {visible}{unit} would be."),
         );
     }
-    let text = format!("The twin differs by {difference} ± {limit} {unit}.");
+    let text = format!("The twin differs by {difference} ± {limit}{unit}.");
     Finding::new(Grade::Poor, capital(&name), text)
 }
 
