@@ -3,11 +3,12 @@
 use camera_fit::CameraFit;
 use camera_fit::adjustment::Term;
 use files::format_utc;
+use hifitime::Epoch;
 
 use super::fit::FitArguments;
 
 /// Returns the camera file: tables of a camera, with the origin of each value in a comment.
-pub(super) fn camera_toml(fit: &CameraFit, arguments: &FitArguments) -> String {
+pub(super) fn camera_toml(fit: &CameraFit, arguments: &FitArguments, time: Epoch) -> String {
     let camera = &fit.camera;
     let sigma_of = |term: Term| {
         let found = fit.sigmas.iter().find(|(of, _, _)| *of == term);
@@ -52,7 +53,7 @@ pub(super) fn camera_toml(fit: &CameraFit, arguments: &FitArguments) -> String {
         fit.stars,
         arguments.directory.display(),
         fit.rms_px,
-        format_utc(arguments.time),
+        format_utc(time),
         camera.columns,
         camera.rows,
         camera.focal_length_mm,

@@ -4,6 +4,7 @@ mod camera_file;
 mod fit;
 mod fit_text;
 mod images;
+mod mosaic;
 
 use clap::Subcommand;
 use files::Failure;
@@ -16,7 +17,7 @@ pub(in crate::command) enum CameraCommand {
     /// Fit focal length, principal point and distortion to frames of the night sky
     ///
     /// Needs the field to about ten percent and no attitude. Images are grey or colour PNG, TIFF, JPEG
-    /// (colour: the mean of the three), grey FITS or OpenEXR, not mirrored.
+    /// (colour: the mean of the three), grey FITS or OpenEXR, not mirrored; raw mosaics with --bayer.
     Fit(fit::FitArguments),
 }
 
