@@ -545,13 +545,13 @@ mod tests {
     /// Returns what the header of a file with the given cards, besides those of its pixels, states of the
     /// sky.
     fn sky_header(cards: &[(&str, Value)]) -> Result<SkyHeader, FileError> {
-        let directory = tempfile::tempdir().unwrap();
+        let directory = tempdir().unwrap();
         let path = directory.path().join("a.fits");
         let mut all = build_primary_header(8, &[1000, 2]).unwrap();
         all.extend(cards.iter().map(|(keyword, value)| Card::new(keyword, value.clone()).unwrap()));
         let mut bytes = serialize_header(&all).unwrap();
         bytes.resize(bytes.len() + BLOCK_SIZE, 0);
-        std::fs::write(&path, bytes).unwrap();
+        fs::write(&path, bytes).unwrap();
         read_sky_header(&path)
     }
 
@@ -613,7 +613,7 @@ mod tests {
                 .map(|card| format!("{card:80}"))
                 .concat();
         fs::write(&path, format!("{header:2880}")).unwrap();
-        let file = fs::File::options().write(true).open(&path).unwrap();
+        let file = File::options().write(true).open(&path).unwrap();
         file.set_len(2880 + 8 * 16384 * 16384).unwrap();
         let size = RequiredSize { columns: 752, rows: 580, whose: "the size of the camera" };
         let message = read(&path, Some(size)).unwrap_err().to_string();
