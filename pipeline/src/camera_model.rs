@@ -36,15 +36,17 @@ impl CameraModel {
     pub fn new(camera: &Camera) -> Result<Self, ContractError> {
         camera.check()?;
         let (focal_x_px, focal_y_px) = camera.focal_length_px();
+        let principal = PixelPoint::new(camera.principal_x_px, camera.principal_y_px);
+        let corner_px = farthest_corner_px((camera.columns, camera.rows), principal);
         Ok(Self {
             columns: camera.columns,
             rows: camera.rows,
             focal_x_px,
             focal_y_px,
-            principal: PixelPoint::new(camera.principal_x_px, camera.principal_y_px),
+            principal,
             radial: camera.radial,
             tangential: camera.tangential,
-            fold_radius_px: fold_radius_px(camera),
+            fold_radius_px: fold_radius_px(camera.radial, corner_px),
         })
     }
 
@@ -73,6 +75,20 @@ impl CameraModel {
     /// of pixels, stays.
     pub(crate) fn with_focal_ratio(&self, ratio: f64) -> Self {
         Self { focal_x_px: self.focal_x_px * ratio, focal_y_px: self.focal_y_px * ratio, ..self.clone() }
+    }
+
+    /// Returns the camera with its radial distortion k1 increased by `added`, px⁻².
+    pub(crate) fn with_added_radial(&self, added: f64) -> Self {
+        let [k1, k2, k3] = self.radial;
+        let radial = [k1 + added, k2, k3];
+        let corner_px = farthest_corner_px((self.columns, self.rows), self.principal);
+        let fold_radius_px = match radial {
+            // Without other terms 1 + 3 k1 r² = 0 is solved at once: hypotheses are made by the thousand.
+            [k1, 0.0, 0.0] if k1 >= 0.0 || -48.0 * k1 * corner_px * corner_px < 1.0 => f64::INFINITY,
+            [k1, 0.0, 0.0] => (-1.0 / (3.0 * k1)).sqrt(),
+            _ => fold_radius_px(radial, corner_px),
+        };
+        Self { radial, fold_radius_px, ..self.clone() }
     }
 
     /// Returns the focal length along columns and along rows, px.
@@ -130,7 +146,7 @@ impl CameraModel {
     }
 
     /// Returns the derivatives of [`CameraModel::distort`]: ∂x/∂u, ∂x/∂v = ∂y/∂u, and ∂y/∂v.
-    fn slopes(&self, u: f64, v: f64) -> (f64, f64, f64) {
+    pub(crate) fn slopes(&self, u: f64, v: f64) -> (f64, f64, f64) {
         let [k1, k2, k3] = self.radial;
         let [p1, p2] = self.tangential;
         let r2 = u * u + v * v;
@@ -175,16 +191,16 @@ fn solve((a, b, d): (f64, f64, f64), (p, q): (f64, f64)) -> (f64, f64) {
     ((d * p - b * q) / determinant, (a * q - b * p) / determinant)
 }
 
+/// Returns the distance of the detector's farthest corner from the principal point, px.
+fn farthest_corner_px((columns, rows): (usize, usize), principal: PixelPoint) -> f64 {
+    let farthest = |n: usize, c: f64| (c + 0.5).abs().max((n as f64 - 0.5 - c).abs());
+    libm::hypot(farthest(columns, principal.x), farthest(rows, principal.y))
+}
+
 /// Returns the first radius where d/dr (r + k1 r³ + k2 r⁵ + k3 r⁷) is not positive, searched up to four times
 /// the distance of the detector's farthest corner: directions beyond a farther fold are not imaged and cannot
 /// return to the detector.
-fn fold_radius_px(camera: &Camera) -> f64 {
-    let [k1, k2, k3] = camera.radial;
-    let farthest = |n: usize, c: f64| (c + 0.5).abs().max((n as f64 - 0.5 - c).abs());
-    let corner = libm::hypot(
-        farthest(camera.columns, camera.principal_x_px),
-        farthest(camera.rows, camera.principal_y_px),
-    );
+fn fold_radius_px([k1, k2, k3]: [f64; 3], corner: f64) -> f64 {
     const STEPS: u32 = 4000;
     (1..=STEPS)
         .map(|step| 4.0 * corner * f64::from(step) / f64::from(STEPS))
@@ -199,6 +215,10 @@ fn fold_radius_px(camera: &Camera) -> f64 {
 pub(crate) mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    fn fold_of(camera: &Camera) -> f64 {
+        CameraModel::new(camera).unwrap().fold_radius_px
+    }
 
     /// Returns the camera of Table 1 of the far-range paper.
     pub(crate) fn argon_camera() -> Camera {
@@ -217,6 +237,22 @@ pub(crate) mod tests {
 
     pub(crate) fn argon() -> CameraModel {
         CameraModel::new(&argon_camera()).unwrap()
+    }
+
+    #[test]
+    fn an_added_distortion_is_that_of_a_camera_with_it() {
+        let camera = argon_camera();
+        for added in [-4e-7, -3e-8, 0.0, 2e-8] {
+            let [k1, k2, k3] = camera.radial;
+            let expected = CameraModel::new(&Camera { radial: [k1 + added, k2, k3], ..camera.clone() });
+            let expected = expected.unwrap();
+            let found = CameraModel::new(&camera).unwrap().with_added_radial(added);
+            // The search for the fold has steps of a thousandth of the corner.
+            let is_same_fold = found.fold_radius_px == expected.fold_radius_px
+                || (found.fold_radius_px - expected.fold_radius_px).abs() < 1.0;
+            assert!(is_same_fold, "{added}: {} {}", found.fold_radius_px, expected.fold_radius_px);
+            assert_eq!(found.distort(100.0, -50.0), expected.distort(100.0, -50.0));
+        }
     }
 
     #[test]
@@ -296,11 +332,11 @@ pub(crate) mod tests {
         let (k1, k2, k3) = (1.0 / (3.0 * r2), 1.0 / (5.0 * r2 * r2), 1.0 / (7.0 * r2 * r2 * r2));
         for radial in [[-k1, 0.0, 0.0], [0.0, -k2, 0.0], [0.0, 0.0, -k3], [k1, -k2, -k3], [k1, -3.0 * k2, k3]]
         {
-            let fold = fold_radius_px(&Camera { radial, ..argon_camera() });
+            let fold = fold_of(&Camera { radial, ..argon_camera() });
             // The search has steps of 0.5 px.
             assert!((fold - 400.0).abs() < 0.5, "{radial:?}: {fold}");
         }
-        assert_eq!(fold_radius_px(&argon_camera()), f64::INFINITY);
+        assert_eq!(fold_of(&argon_camera()), f64::INFINITY);
     }
 
     /// The search extends to four times the distance of the corner farthest from the principal point, at any
@@ -321,8 +357,8 @@ pub(crate) mod tests {
             (99.0, 0.0, libm::hypot(99.5, 99.5)),
             (-5.0, 120.0, libm::hypot(104.5, 120.5)),
         ] {
-            assert!(fold_radius_px(&camera(x, y, 3.99 * corner_px)).is_finite(), "{x} {y}");
-            assert_eq!(fold_radius_px(&camera(x, y, 4.01 * corner_px)), f64::INFINITY, "{x} {y}");
+            assert!(fold_of(&camera(x, y, 3.99 * corner_px)).is_finite(), "{x} {y}");
+            assert_eq!(fold_of(&camera(x, y, 4.01 * corner_px)), f64::INFINITY, "{x} {y}");
         }
     }
 

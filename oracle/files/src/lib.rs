@@ -46,9 +46,9 @@ pub use complete::{
 pub use error::{Failure, FileError, FileLocation, create_new, failure, open_regular};
 pub use frame::{
     ExpectedImage, FrameHeader, GreyImage, ImageFormat, ImageMetadata, PixelConversion, RawImage,
-    RequiredSize, Sip, SipTerm, TanSip, WcsError, checked_size, fits_header, read_expected, read_frame,
-    read_grey_image, read_image, read_radiance, write_expected, write_frame, write_png_of_depth,
-    write_radiance,
+    RequiredSize, Sip, SipTerm, SkyHeader, TanSip, WcsError, checked_size, fits_header, read_expected,
+    read_frame, read_grey_image, read_image, read_radiance, read_sky_header, write_expected, write_frame,
+    write_png_of_depth, write_radiance,
 };
 pub use listed_images::{locate_alone, locate_image, refuse_twice};
 pub use loaded_table::{LoadedTable, read_csv_table, read_parquet_table};

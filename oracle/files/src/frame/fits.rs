@@ -4,6 +4,7 @@
 //! `parse_fits` requires the whole file in memory and adds offsets unchecked, which a malicious header can
 //! overflow.
 
+use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
@@ -15,13 +16,17 @@ use fitsio_pure::header::{Card, parse_header_blocks, serialize_header};
 use fitsio_pure::image_writer::ImageWriter;
 use fitsio_pure::primary::build_primary_header;
 use fitsio_pure::value::Value;
+use hifitime::{Epoch, Unit};
 
 use super::fits_cards;
 use super::raw_image::{ImageMetadata, RawImage, RequiredSize, checked_size, dn_of_all};
 use crate::error::file_error::{FileLocation, create_new, open_regular};
 use crate::table::time::parse_utc;
 use crate::table::windows;
-use crate::{FileError, FrameHeader};
+use crate::{FileError, FrameHeader, SkyHeader};
+
+/// Longest exposure that is read from a header, s: a day.
+const MAX_EXPOSURE_S: f64 = 86_400.0;
 
 /// Longest header that is read, in blocks of 36 cards: no frame needs a hundredth of it.
 const MAX_HEADER_BLOCKS: usize = 1024;
@@ -72,6 +77,30 @@ fn fits_error(path: &Path, error: fitsio_pure::Error) -> FileError {
 /// with BSCALE and BZERO applied, converted by the rule of [`crate::frame::raw_image::dn`]; BLANK pixels and
 /// NaN are rejected. Tile-compressed images are not supported.
 pub(crate) fn read(path: &Path, size: Option<RequiredSize<'_>>) -> Result<RawImage, FileError> {
+    in_image_unit(path, |header, reader, span, data_at| {
+        let image = read_image(header, reader, header.data_bytes()?, size)?;
+        check_sums(header, reader, span, data_at)?;
+        Ok(image)
+    })
+}
+
+/// Reads what the header of the first two-dimensional image states of time and field.
+///
+/// # Errors
+/// [`FileError`] for a file that is no FITS file with an image, and for a time or a scale that cannot be
+/// read.
+pub fn read_sky_header(path: &Path) -> Result<SkyHeader, FileError> {
+    in_image_unit(path, |header, _, _, _| {
+        Ok(SkyHeader { time: header.middle_of_exposure()?, field_deg: header.field_deg()? })
+    })
+}
+
+/// Applies a function to the first two-dimensional image of a file: to its header, the file at the beginning
+/// of its data, the extent of header and data in the file, and the beginning of the data.
+fn in_image_unit<T>(
+    path: &Path,
+    function: impl FnOnce(&Header<'_>, &mut BufReader<File>, Range<u64>, u64) -> Result<T, FileError>,
+) -> Result<T, FileError> {
     let io = |source| FileError::io(path, "read", source);
     let file = open_regular(path)?;
     let length = file.metadata().map_err(io)?.len();
@@ -89,9 +118,7 @@ pub(crate) fn read(path: &Path, size: Option<RequiredSize<'_>>) -> Result<RawIma
             header.error("bytes of data", bytes, format!("at most {left}, the bytes left in the file"))
         })?;
         if header.is_image()? {
-            let image = read_image(&header, &mut reader, bytes, size)?;
-            check_sums(&header, &mut reader, start..end, offset)?;
-            return Ok(image);
+            return function(&header, &mut reader, start..end, offset);
         }
         offset = end.next_multiple_of(BLOCK_SIZE as u64);
         if offset >= length {
@@ -259,23 +286,70 @@ impl Header<'_> {
     /// Returns the frame data that the header states; the time only if it is in UTC.
     fn metadata(&self) -> Result<ImageMetadata, FileError> {
         let frame = self.integer("FRAMENO")?.map(|_| self.count("FRAMENO", None)).transpose()?;
+        let exposure_s = self.value("EXPTIME").map(|_| self.number("EXPTIME", 0.0)).transpose()?;
+        Ok(ImageMetadata {
+            frame: frame.map(|frame| ("FRAMENO", frame)),
+            time: self.utc("DATE-AVG")?.map(|time| ("DATE-AVG", time)),
+            exposure_s: exposure_s.map(|exposure_s| ("EXPTIME", exposure_s)),
+        })
+    }
+
+    /// Returns the time of a keyword; `None` without it, and if the header has another time scale than UTC.
+    fn utc(&self, keyword: &str) -> Result<Option<Epoch>, FileError> {
         let is_utc = match self.value("TIMESYS") {
             Some(Value::String(scale)) => scale.trim() == "UTC",
             _ => true,
         };
-        let time = match self.value("DATE-AVG").filter(|_| is_utc) {
+        match self.value(keyword).filter(|_| is_utc) {
             Some(Value::String(text)) => {
                 let time = parse_utc(&format!("{}Z", text.trim().trim_end_matches('Z')));
-                Some(time.map_err(|expected| self.error("DATE-AVG", text, expected))?)
+                Ok(Some(time.map_err(|expected| self.error(keyword, text, expected))?))
             }
-            _ => None,
-        };
-        let exposure_s = self.value("EXPTIME").map(|_| self.number("EXPTIME", 0.0)).transpose()?;
-        Ok(ImageMetadata {
-            frame: frame.map(|frame| ("FRAMENO", frame)),
-            time: time.map(|time| ("DATE-AVG", time)),
-            exposure_s: exposure_s.map(|exposure_s| ("EXPTIME", exposure_s)),
-        })
+            _ => Ok(None),
+        }
+    }
+
+    /// Returns the middle of the exposure: `DATE-AVG`, or half of `EXPTIME`, s, after `DATE-OBS`, the
+    /// beginning (FITS standard 4.0, 9.5). `None` without these, and for a `DATE-OBS` without a time of day.
+    fn middle_of_exposure(&self) -> Result<Option<Epoch>, FileError> {
+        if let Some(time) = self.utc("DATE-AVG")? {
+            return Ok(Some(time));
+        }
+        let has_time = matches!(self.value("DATE-OBS"), Some(Value::String(text)) if text.contains('T'));
+        if !has_time {
+            return Ok(None);
+        }
+        let exposure_s = self.number("EXPTIME", 0.0)?;
+        if !(0.0..=MAX_EXPOSURE_S).contains(&exposure_s) {
+            return Err(self.error("EXPTIME", exposure_s, format!("0 to {MAX_EXPOSURE_S} s")));
+        }
+        Ok(self.utc("DATE-OBS")?.map(|start| start + Unit::Second * (0.5 * exposure_s)))
+    }
+
+    /// Returns the width of the field along the columns, degrees, by the gnomonic world coordinates (TAN,
+    /// TAN-SIP) of the image: 2 atan(N s/2) for N columns of the scale s, rad, at the reference point
+    /// (Calabretta & Greisen 2002, A&A 395, 1077). `None` without them.
+    fn field_deg(&self) -> Result<Option<f64>, FileError> {
+        let is_gnomonic = matches!(self.value("CTYPE1"), Some(Value::String(kind)) if kind.contains("-TAN"));
+        if !is_gnomonic {
+            return Ok(None);
+        }
+        // The first column of the matrix is the step of a pixel along the columns: CDi_1, or CDELTi PCi_1.
+        let mut squared = 0.0;
+        for (axis, diagonal) in [(1, 1.0), (2, 0.0)] {
+            let step = match self.value(&format!("CD{axis}_1")) {
+                Some(_) => self.number(&format!("CD{axis}_1"), 0.0)?,
+                None if self.value("CD1_1").is_some() => 0.0,
+                None => {
+                    self.number(&format!("CDELT{axis}"), 0.0)?
+                        * self.number(&format!("PC{axis}_1"), diagonal)?
+                }
+            };
+            squared += step * step;
+        }
+        let columns = self.count("NAXIS1", None)? as f64;
+        let field_deg = 2.0 * libm::atan(0.5 * columns * squared.sqrt().to_radians()).to_degrees();
+        Ok(Some(field_deg).filter(|field_deg| *field_deg > 0.0))
     }
 
     /// Returns true if the first row of the file is the bottom row of the image, by `ROWORDER`, a convention
@@ -468,6 +542,47 @@ mod tests {
         read_bytes(&file(&[&cards, more].concat(), data))
     }
 
+    /// Returns what the header of a file with the given cards, besides those of its pixels, states of the
+    /// sky.
+    fn sky_header(cards: &[(&str, Value)]) -> Result<SkyHeader, FileError> {
+        let directory = tempdir().unwrap();
+        let path = directory.path().join("a.fits");
+        let mut all = build_primary_header(8, &[1000, 2]).unwrap();
+        all.extend(cards.iter().map(|(keyword, value)| Card::new(keyword, value.clone()).unwrap()));
+        let mut bytes = serialize_header(&all).unwrap();
+        bytes.resize(bytes.len() + BLOCK_SIZE, 0);
+        fs::write(&path, bytes).unwrap();
+        read_sky_header(&path)
+    }
+
+    #[test]
+    fn time_and_field_are_those_of_the_header() {
+        let text = |text: &str| Value::String(text.to_owned());
+        let seconds = |header: SkyHeader| {
+            (header.time.unwrap() - parse_utc("2026-03-01T00:00:00Z").unwrap()).to_seconds()
+        };
+        let start = ("DATE-OBS", text("2026-03-01T00:00:10.5"));
+        assert_eq!(seconds(sky_header(&[start.clone(), ("EXPTIME", Value::Float(4.0))]).unwrap()), 12.5);
+        assert_eq!(
+            seconds(sky_header(&[start.clone(), ("DATE-AVG", text("2026-03-01T00:00:11"))]).unwrap()),
+            11.0
+        );
+        assert_eq!(sky_header(&[("DATE-OBS", text("2026-03-01"))]).unwrap(), SkyHeader::default());
+        assert_eq!(sky_header(&[("TIMESYS", text("TAI")), start.clone()]).unwrap(), SkyHeader::default());
+        let refused = sky_header(&[start, ("EXPTIME", Value::Float(-1.0))]).unwrap_err().to_string();
+        assert!(refused.contains("EXPTIME") && refused.contains("0 to 86400 s"), "{refused}");
+        // A scale of 0.02° in a rotated image of 1000 columns: 2 atan(500 · 0.02°) = 19.8°.
+        let tan = ("CTYPE1", text("RA---TAN-SIP"));
+        let turned = [tan.clone(), ("CD1_1", Value::Float(-0.012)), ("CD2_1", Value::Float(0.016))];
+        let scaled = [tan, ("CDELT1", Value::Float(-0.02)), ("CDELT2", Value::Float(0.02))];
+        for cards in [&turned[..], &scaled[..]] {
+            let field_deg = sky_header(cards).unwrap().field_deg.unwrap();
+            assert!((field_deg - 19.8006).abs() < 1e-3, "{field_deg}");
+        }
+        let other = [("CTYPE1", text("RA---SIN")), ("CDELT1", Value::Float(-0.02))];
+        assert_eq!(sky_header(&other).unwrap(), SkyHeader::default());
+    }
+
     #[test]
     fn the_rows_are_in_the_order_that_the_file_states() {
         let rows = |order: &str| {
@@ -498,7 +613,7 @@ mod tests {
                 .map(|card| format!("{card:80}"))
                 .concat();
         fs::write(&path, format!("{header:2880}")).unwrap();
-        let file = fs::File::options().write(true).open(&path).unwrap();
+        let file = File::options().write(true).open(&path).unwrap();
         file.set_len(2880 + 8 * 16384 * 16384).unwrap();
         let size = RequiredSize { columns: 752, rows: 580, whose: "the size of the camera" };
         let message = read(&path, Some(size)).unwrap_err().to_string();

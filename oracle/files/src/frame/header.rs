@@ -27,3 +27,12 @@ pub struct FrameHeader {
     /// the header.
     pub wcs: Option<TanSip>,
 }
+
+/// Statements of a FITS header about the sky in its image.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SkyHeader {
+    /// Middle of the exposure.
+    pub time: Option<Epoch>,
+    /// Width of the field along the columns by world coordinates, degrees.
+    pub field_deg: Option<f64>,
+}

@@ -13,8 +13,9 @@ pub struct BestConfig {
     /// Initial attitude of a frame: `telemetry`, or `none` for an attitude from the stars of the frame only,
     /// independent of the attitude in the telemetry.
     pub prior: AttitudePrior,
-    /// Largest relative error of the focal length with which the stars of a frame without a prior attitude
-    /// are looked up, 0 to 0.2. If they contradict the stated focal length, theirs is used.
+    /// Largest relative error of the focal length with which the stars of a frame are looked up, 0 to 0.2:
+    /// without a prior attitude always, with one where most bright sources are no listed stars. If they
+    /// contradict the stated focal length, theirs is used.
     #[schemars(range(min = 0, max = 0.2))]
     pub focal_length_tolerance: f64,
     /// Position error of a star in addition to that of its centroid (list, distortion, trail), px, 0 to 10.

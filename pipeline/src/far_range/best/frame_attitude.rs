@@ -5,6 +5,7 @@ use contract::{AttitudeSource, CameraFrame, Icrs, PixelPoint, Rotation, Telemetr
 use super::lost_in_space;
 use super::mounting::AttitudeError;
 use super::photometry::{FittedSource, PhotometryContext, Source};
+use super::rescaling::positions_of_stars;
 use super::stars::{
     ExpectedStar, StarCandidate, StarMeasurement, are_confirmed, image_covariance, is_contradicted,
     matches_at_positions, matches_by_offset, solve_attitude,
@@ -160,17 +161,15 @@ impl BestPipeline {
     ) -> Option<AttitudeStart> {
         let prior = self.mounting.prior();
         match (&self.lost_in_space, overrides.camera_from_icrs) {
-            (None, _) => {
-                Some(AttitudeStart { reference: self.mounting.reference(telemetry.body_from_icrs), prior })
+            (None, given) => {
+                let reference = self.mounting.reference(telemetry.body_from_icrs);
+                let start = AttitudeStart { reference, prior };
+                let as_before = given.is_none().then(|| self.start_as_before(sources, &start)).flatten();
+                Some(as_before.unwrap_or(start))
             }
             (Some(_), Some(reference)) => Some(AttitudeStart { reference, prior }),
             (Some(solver), None) => {
-                let stars: Vec<(PixelPoint, f64)> = sources
-                    .iter()
-                    .filter(|source| source.spike.is_none())
-                    .map(|source| (source.centre, source.flux_e))
-                    .collect();
-                let found = solver.solve(&stars);
+                let found = solver.solve(&positions_of_stars(sources));
                 // A frame without an attitude has the stated focal length, not that of the frame before.
                 let focal_ratio = found.as_ref().map_or(1.0, |found| found.focal_ratio);
                 self.model = self.stated_model.with_focal_ratio(focal_ratio);
@@ -217,7 +216,7 @@ impl BestPipeline {
             n_stars = 0;
         }
         let is_attitude_given = input.overrides.camera_from_icrs.is_some();
-        if !is_attitude_given && self.lost_in_space.is_none() {
+        if !is_attitude_given && self.lost_in_space.is_none() && !self.is_rescaled {
             self.mounting.update(&prior, &search.error);
         }
         let clusters = search.candidates.len();

@@ -24,9 +24,9 @@ use nalgebra::Matrix3;
 
 use crate::CameraModel;
 use crate::far_range::identify::StarList;
-use hypothesis::{Hypothesis, Match};
+use hypothesis::{Hypothesis, Lens, Match, ShiftPrior};
 use selection::{brightest_of_each_field, largest_chord};
-use separations::StarPairs;
+use separations::{Neighbours, StarPairs};
 use source::ImageSource;
 use triangles::{TriangleSearch, pyramid_order};
 
@@ -36,10 +36,15 @@ pub(super) struct LostInSpace {
     model: CameraModel,
     /// Largest relative error of the model's focal length.
     focal_length_tolerance: f64,
+    /// Largest share by which an unknown radial distortion moves a point at half the diagonal; 0 if the
+    /// distortion is known.
+    corner_shift_bound: f64,
     /// Brightest stars of each field.
     stars: Vec<ListedStar>,
     list: StarList,
     pairs: StarPairs,
+    /// Neighbours of each star; none with a known focal length.
+    neighbours: Neighbours,
 }
 
 /// Attitude found without a prior.
@@ -53,6 +58,8 @@ pub(super) struct FoundAttitude {
     pub(super) focal_ratio: f64,
     /// Standard deviation of the natural logarithm of `focal_ratio`; 0 for the stated focal length.
     pub(super) focal_sigma: f64,
+    /// Radial distortion k1 in addition to the stated one, px⁻²; 0 if that is known.
+    pub(super) added_radial: f64,
     /// Sources, by their index in the argument, with their stars: at least four, each source and each star
     /// once.
     pub(super) matched: Vec<(usize, ListedStar)>,
@@ -88,6 +95,9 @@ pub(super) const MIN_MATCHED: usize = 4;
 /// Smallest number of stars of a final attitude with a free focal length: ten coordinates for four unknowns.
 const MIN_MATCHED_WITH_FREE_FOCAL_LENGTH: usize = 5;
 
+/// The same with a free distortion: twelve coordinates for five unknowns.
+const MIN_MATCHED_WITH_FREE_LENS: usize = 6;
+
 /// Largest error, in standard deviations, of a focal length that counts as the stated one.
 const STATED_SIGMAS: f64 = 4.0;
 
@@ -103,13 +113,26 @@ impl LostInSpace {
     ) -> Self {
         let stars = brightest_of_each_field(stars, model, max_magnitude);
         let widest = model.with_focal_ratio(1.0 - focal_length_tolerance);
+        let pairs = StarPairs::new(&stars, largest_chord(&widest));
+        let neighbours = match focal_length_tolerance {
+            0.0 => Neighbours::default(),
+            _ => Neighbours::new(&pairs, stars.len()),
+        };
         Self {
             list: StarList::new(&stars, f64::INFINITY, &widest),
-            pairs: StarPairs::new(&stars, largest_chord(&widest)),
+            pairs,
+            neighbours,
             model: model.clone(),
             focal_length_tolerance,
+            corner_shift_bound: 0.0,
             stars,
         }
+    }
+
+    /// Returns the solver for a radial distortion that differs from the stated one by up to `bound` of the
+    /// distance from the centre at half the diagonal, 0 to 0.1. The focal length must have a tolerance.
+    pub(super) fn with_unknown_distortion(self, bound: f64) -> Self {
+        Self { corner_shift_bound: bound, ..self }
     }
 
     /// Returns the attitude determined by the sources of a frame, each a position in px and a flux in any
@@ -121,7 +144,8 @@ impl LostInSpace {
             return self.solve_with_known_focal_length(&sources);
         }
         let found = self.solve_with_free_focal_length(&sources)?;
-        if libm::log(found.focal_ratio).abs() > STATED_SIGMAS * found.focal_sigma {
+        let is_other = libm::log(found.focal_ratio).abs() > STATED_SIGMAS * found.focal_sigma;
+        if is_other || self.corner_shift_bound > 0.0 {
             return Some(found);
         }
         // The stars confirm the stated focal length, which is then better known than by them.
@@ -134,7 +158,7 @@ impl LostInSpace {
         let mut tested = 0;
         for corners in pyramid_order(sources.len().min(MAX_TRIANGLE_SOURCES)) {
             let corners = corners.map(|corner| sources[corner]);
-            for stars in search.matching_triples(corners.map(|corner| corner.direction), 0.0) {
+            for stars in search.matching_triples(corners.map(|corner| corner.direction)) {
                 let triangle: Vec<Match> = corners
                     .into_iter()
                     .zip(stars)
@@ -194,6 +218,7 @@ impl LostInSpace {
         let fewest = match focal_length {
             FocalLength::Stated => MIN_MATCHED,
             FocalLength::Free { .. } => MIN_MATCHED_WITH_FREE_FOCAL_LENGTH,
+            FocalLength::FreeLens { .. } => MIN_MATCHED_WITH_FREE_LENS,
         };
         for _ in 0..MAX_REFINEMENTS {
             let hypothesis = match focal_length {
@@ -201,16 +226,23 @@ impl LostInSpace {
                 FocalLength::Free { ratio } => {
                     Hypothesis::with_free_focal_length(&matched, &self.model, ratio)?
                 }
+                FocalLength::FreeLens { lens, prior } => {
+                    Hypothesis::with_free_lens(&matched, &self.model, lens, prior)?
+                }
             };
-            if let FocalLength::Free { ratio } = &mut focal_length {
-                *ratio = hypothesis.focal_ratio;
+            match &mut focal_length {
+                FocalLength::Stated => {}
+                FocalLength::Free { ratio } => *ratio = hypothesis.lens.focal_ratio,
+                FocalLength::FreeLens { lens, .. } => *lens = hypothesis.lens,
             }
             let next = hypothesis.support(sources, &[], &self.list).matched;
             let is_settled = are_same(&next, &matched);
             matched = next;
             if is_settled {
-                let is_found = matched.len() >= fewest && self.is_within_tolerance(hypothesis.focal_ratio);
-                return is_found.then(|| FoundAttitude::from_hypothesis(&hypothesis, &matched));
+                let is_found =
+                    matched.len() >= fewest && self.is_within_tolerance(hypothesis.lens.focal_ratio);
+                let found = || FoundAttitude::from_hypothesis(&hypothesis, &matched, &self.model);
+                return is_found.then(found);
             }
         }
         None
@@ -233,14 +265,17 @@ enum FocalLength {
     Stated,
     /// That of the stars, with a first value over the stated one.
     Free { ratio: f64 },
+    /// That of the stars, with a radial distortion: first values, and the prior of the distortion.
+    FreeLens { lens: Lens, prior: ShiftPrior },
 }
 
 impl FoundAttitude {
-    fn from_hypothesis(hypothesis: &Hypothesis, matched: &[Match]) -> Self {
+    fn from_hypothesis(hypothesis: &Hypothesis, matched: &[Match], stated: &CameraModel) -> Self {
         Self {
             camera_from_icrs: hypothesis.camera_from_icrs,
             covariance: hypothesis.covariance.fixed_view::<3, 3>(0, 0).into_owned(),
-            focal_ratio: hypothesis.focal_ratio,
+            focal_ratio: hypothesis.lens.focal_ratio,
+            added_radial: hypothesis.lens.radial(stated),
             focal_sigma: hypothesis.covariance[(3, 3)].sqrt(),
             matched: matched.iter().map(|pair| (pair.source.index, pair.star)).collect(),
         }

@@ -16,6 +16,7 @@ mod photometry;
 mod pipeline;
 mod plate_solver;
 mod point_image;
+mod rescaling;
 mod stars;
 mod start;
 mod state;

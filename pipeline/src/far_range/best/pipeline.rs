@@ -122,12 +122,19 @@ impl BestPipeline {
     ) -> Outcome {
         let start = self.start(sources, telemetry, overrides);
         let trail_px = self.trail_px(telemetry, elapsed_s, start.as_ref());
-        let attitude = match &start {
+        let mut attitude = match &start {
             Some(start) => {
                 self.attitude(&AttitudeInput { context, sources, trail_px, start, telemetry, overrides })
             }
             None => FrameAttitude::unknown(sources),
         };
+        let is_given = overrides.camera_from_icrs.is_some() || overrides.identity.is_some();
+        if let Some(start) = start.filter(|_| !is_given)
+            && let Some(start) = &self.start_of_unexplained(sources, &attitude, &start)
+        {
+            attitude =
+                self.attitude(&AttitudeInput { context, sources, trail_px, start, telemetry, overrides });
+        }
         let known = self.known_sources(&attitude, trail_px);
         let exposure_s = telemetry.exposure_s;
         let unlisted_stars = self.unlisted_stars(&attitude, sources, exposure_s, context.threshold_e);

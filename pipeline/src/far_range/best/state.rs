@@ -10,6 +10,7 @@ use super::lost_in_space::LostInSpace;
 use super::mounting::MountingFilter;
 use super::photometry::SourceFitter;
 use super::point_image::PointImageEstimate;
+use super::rescaling::Rescaling;
 use super::tracks::Tracks;
 use super::unlisted_stars::magnitude_limit;
 use crate::far_range::background::BackgroundEstimator;
@@ -33,6 +34,8 @@ pub(in crate::far_range) struct BestPipeline {
     pub(super) mounting: MountingFilter,
     /// True if the stars of the frame contradict the stated focal length.
     pub(super) is_rescaled: bool,
+    /// State of the search for the focal length of frames with a prior attitude.
+    pub(super) rescaling: Rescaling,
     /// Solver for frames without a prior attitude.
     pub(super) lost_in_space: Option<LostInSpace>,
     pub(super) psf: PointImageEstimate,
@@ -102,10 +105,7 @@ impl BestPipeline {
         }
         let model = CameraModel::new(&setup.camera)?;
         let calibration = &setup.calibration;
-        let widest = match config.best.prior {
-            AttitudePrior::None => model.with_focal_ratio(1.0 - config.best.focal_length_tolerance),
-            AttitudePrior::Telemetry => model.clone(),
-        };
+        let widest = model.with_focal_ratio(1.0 - config.best.focal_length_tolerance);
         Ok(Self {
             star_limit: magnitude_limit(&setup.stars)
                 .map(|limit| limit.min(config.identification.max_magnitude)),
@@ -133,6 +133,7 @@ impl BestPipeline {
                 },
             },
             is_rescaled: false,
+            rescaling: Rescaling::default(),
             hot_pixels: HotPixels::default(),
             tracks: Tracks::default(),
             background: BackgroundEstimator::default(),

@@ -12,7 +12,8 @@ use serde_json::{Value, json};
 use twin::likeness::{Comparison, Likeness, compare as compare_sets};
 use twin::{FrameSet, twin_frames};
 
-use super::fit::{fitted, known_guess};
+use super::fit::fitted;
+use super::guess::known_guess;
 use super::images::{images, read_frames};
 use super::pages::write_likeness_page;
 use crate::command::Answer;

@@ -1,8 +1,10 @@
 //! Words and JSON of a fit.
 
 use camera_fit::adjustment::Term;
-use camera_fit::{CameraFit, FittedFrame};
+use camera_fit::{CameraFit, EpochOffset, FittedFrame};
 use contract::{Angle, Direction, PixelPoint};
+use files::format_utc;
+use hifitime::Epoch;
 use pipeline::CameraModel;
 use serde_json::{Value, json};
 
@@ -61,6 +63,27 @@ pub(super) fn fit_text(fit: &CameraFit) -> String {
     text
 }
 
+/// Returns doubts about the frames of a fit, for frames of a stated time.
+pub(super) fn warnings(fit: &CameraFit, time: Epoch) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if fit.other_cameras > 0 {
+        warnings.push(format!(
+            "{} of {} frames with an attitude are of another camera or another setting of the lens and are left out",
+            fit.other_cameras,
+            fit.other_cameras + fit.frames.len()
+        ));
+    }
+    if let Some(epoch) = fit.epoch.filter(EpochOffset::is_contradiction) {
+        warnings.push(format!(
+            "the proper motions of the stars are those {:+.1} ± {:.1} years from {}: check --time",
+            epoch.years,
+            epoch.sigma_years,
+            format_utc(time)
+        ));
+    }
+    warnings
+}
+
 /// Returns the figures of the sensor and the optics as text.
 fn sensor_text(fit: &CameraFit) -> String {
     let mut text =
@@ -110,7 +133,7 @@ fn pointing(fit: &CameraFit, frame: &FittedFrame) -> (f64, f64, f64) {
 }
 
 /// Returns the fit as JSON.
-pub(super) fn document(fit: &CameraFit) -> Value {
+pub(super) fn document(fit: &CameraFit, time: Epoch) -> Value {
     let parameters: Vec<Value> = fit
         .sigmas
         .iter()
@@ -147,5 +170,8 @@ pub(super) fn document(fit: &CameraFit) -> Value {
         "left_out_rms_px": fit.left_out_rms_px.is_finite().then_some(fit.left_out_rms_px),
         "background_dn": fit.background_dn, "noise_dn": fit.noise_dn, "star_sigma_px": fit.width_px,
         "hot_pixels": fit.hot_pixels, "photometry": photometry, "frames": frames, "unsolved": unsolved,
+        "epoch_offset_years": fit.epoch.map(|epoch| epoch.years),
+        "epoch_offset_sigma_years": fit.epoch.map(|epoch| epoch.sigma_years),
+        "warnings": warnings(fit, time),
     })
 }

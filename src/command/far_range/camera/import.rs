@@ -8,7 +8,7 @@ use files::{AtomicFile, Conversion, Failure, LensCalibration, read_calibration};
 use pipeline::CameraModel;
 use serde_json::json;
 
-use super::fit::pixel;
+use super::guess::pixel;
 use crate::command::Answer;
 use crate::command::options::{number, output_path};
 use crate::command::output::Output;

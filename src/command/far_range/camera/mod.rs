@@ -4,8 +4,10 @@ mod compare;
 mod export;
 mod fit;
 mod fit_text;
+mod guess;
 mod images;
 mod import;
+mod mosaic;
 #[cfg(feature = "report")]
 mod pages;
 #[cfg(not(feature = "report"))]
@@ -33,7 +35,7 @@ pub(in crate::command) enum CameraCommand {
     /// Fit focal length, principal point and distortion to frames of the night sky
     ///
     /// Needs the field to about ten percent and no attitude. Images are grey or colour PNG, TIFF, JPEG
-    /// (colour: the mean of the three), grey FITS or OpenEXR, not mirrored.
+    /// (colour: the mean of the three), grey FITS or OpenEXR, not mirrored; raw mosaics with --bayer.
     Fit(fit::FitArguments),
     /// Read a calibration of OpenCV, ROS or Kalibr, and write a camera file
     ///

@@ -8,13 +8,13 @@ use files::{AtomicFile, Failure};
 use run::ScenarioSource;
 use serde_json::json;
 use twin::likeness::compare;
-use twin::{FrameSet, TwinCamera, camera_toml, pointings, scenario_text, twin_frames};
+use twin::{FrameSet, Origin, TwinCamera, pointings, scenario_text, twin_frames};
 
-use super::fit::{GuessArguments, fitted, known_guess, measured_sensor};
-use super::fit_text::fit_text;
+use super::fit::{fitted, measured_sensor};
+use super::fit_text::{fit_text, warnings};
+use super::guess::{GuessArguments, known_guess};
 use super::images::{images, read_frames};
 use super::refuse_existing;
-use super::sensor_file::SensorSource;
 use crate::command::Answer;
 use crate::command::options::output_path;
 use crate::command::output::Output;
@@ -36,20 +36,24 @@ pub(in crate::command) struct TwinArguments {
 }
 
 pub(in crate::command) fn twin(arguments: &TwinArguments, output: &Output) -> Result<Answer, Failure> {
-    let paths = images(&arguments.directory)?;
+    let directory = &arguments.directory;
+    let paths = images(directory)?;
     let (scenario, attitudes) = (&arguments.out, arguments.out.with_extension("aem"));
     for file in [scenario, &attitudes] {
         refuse_existing(file)?;
     }
-    let guess = &arguments.guess;
-    let sensor = guess.sensor()?;
+    let sensor = arguments.guess.sensor()?;
     let frames = read_frames(&paths, output)?;
-    let Some(set) = fitted(&arguments.directory, frames, &guess.first_guess(), output)? else {
-        return Ok(Answer::No);
-    };
-    let aem = pointings(&set.fit, guess.time);
-    AtomicFile::with_text(&attitudes, &aem.to_kvn())?.commit_new()?;
-    let written = corrected_scenario(arguments, &set, sensor.as_ref(), &attitudes, output)
+    let guess = arguments.guess.first_guess(directory, &paths, output)?;
+    let Some(set) = fitted(directory, frames, &guess, output)? else { return Ok(Answer::No) };
+    for warning in warnings(&set.fit, guess.time) {
+        output.note(&format!("warning: {warning}"));
+    }
+    let origin = Origin { directory, time: guess.time, exposure_s: arguments.guess.exposure };
+    let measured = measured_sensor(&set, sensor.as_ref(), origin.exposure_s)?;
+    let twin = TwinCamera::of(&set, measured);
+    AtomicFile::with_text(&attitudes, &pointings(&set.fit, guess.time).to_kvn())?.commit_new()?;
+    let written = corrected_scenario(&set, twin, &origin, scenario, output)
         .and_then(|text| Ok(AtomicFile::with_text(scenario, &text)?.commit_new()?));
     if let Err(failure) = written {
         // Attitudes without a scenario are of no use, and in the way of the next attempt.
@@ -61,8 +65,8 @@ pub(in crate::command) fn twin(arguments: &TwinArguments, output: &Output) -> Re
         fit_text(&set.fit),
         scenario.display(),
         attitudes.display(),
-        shown(&arguments.directory),
-        shown(scenario)
+        directory.display(),
+        scenario.display()
     );
     let document = json!({ "scenario": scenario, "attitudes": attitudes, "frames": set.fit.frames.len() });
     output.answer(&document, words)?;
@@ -70,27 +74,25 @@ pub(in crate::command) fn twin(arguments: &TwinArguments, output: &Output) -> Re
 }
 
 /// Returns the text of the scenario, corrected by its own frames: they are simulated, compared with those of
-/// the camera, and what differs is changed by the difference.
+/// the camera, and what differs is changed by the difference. Its attitudes stand beside it.
+///
+/// # Errors
+/// A [`Failure`] for a scenario that cannot be simulated.
 fn corrected_scenario(
-    arguments: &TwinArguments,
     set: &FrameSet,
-    sensor: Option<&SensorSource>,
-    attitudes: &Path,
+    mut twin: TwinCamera,
+    origin: &Origin<'_>,
+    scenario: &Path,
     output: &Output,
 ) -> Result<String, Failure> {
-    let guess = &arguments.guess;
-    let origin = guess.origin(&arguments.directory);
+    let attitudes = scenario.with_extension("aem");
     let name = attitudes.file_name().unwrap_or_default().to_string_lossy();
-    let text_of = |twin: &TwinCamera| {
-        scenario_text(&set.fit, &camera_toml(&set.fit, twin, &origin), &name, guess.time, guess.exposure)
-    };
-    let measured = measured_sensor(set, sensor, guess.exposure)?;
-    let mut twin = TwinCamera::of(set, measured);
+    let folder = scenario.parent().map(Path::to_path_buf).unwrap_or_default();
     for _ in 0..MAX_CORRECTIONS {
-        let folder = arguments.out.parent().map(Path::to_path_buf).unwrap_or_default();
-        let source = ScenarioSource::parse("twin".to_owned(), folder, arguments.out.clone(), text_of(&twin))?;
+        let text = scenario_text(set, &twin, origin, &name);
+        let source = ScenarioSource::parse("twin".to_owned(), folder.clone(), scenario.to_path_buf(), text)?;
         let frames = twin_frames(source.typed("boresight twin")?, &source.folder)?;
-        match fit_camera(&frames, &known_guess(&set.fit.camera, guess.time)) {
+        match fit_camera(&frames, &known_guess(&set.fit.camera, origin.time)) {
             Ok(fit) => {
                 let is_changed = twin.correct(&compare(set, &FrameSet { frames, fit }));
                 if !is_changed {
@@ -105,9 +107,5 @@ fn corrected_scenario(
             }
         }
     }
-    Ok(text_of(&twin))
-}
-
-fn shown(path: &Path) -> String {
-    path.display().to_string()
+    Ok(scenario_text(set, &twin, origin, &name))
 }

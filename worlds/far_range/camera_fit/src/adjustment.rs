@@ -123,6 +123,8 @@ pub struct Observation {
     pub position: PixelPoint,
     /// Standard deviation of the measured position along an axis, px.
     pub sigma_px: f64,
+    /// Catalogue number of the star.
+    pub star: u32,
     /// Apparent direction of the star.
     pub direction: Vector3<f64>,
 }
@@ -246,6 +248,42 @@ pub fn adjust(
     }
     let residuals = problem.residuals(&state);
     Some(Adjustment { terms: state.terms, attitudes: state.attitudes, covariance, errors, residuals })
+}
+
+/// Returns the share of given displacements in the residuals of an adjustment, and its standard deviation:
+/// Σ over the observations as for another unknown, adjusted together with all others. `displaced` has the
+/// displaced direction of each observation. `None` if the observations do not determine the share.
+pub(crate) fn displacement_share(
+    camera: &AdjustedCamera,
+    free: &[Term],
+    adjustment: &Adjustment,
+    observations: &[Observation],
+    displaced: &[Vector3<f64>],
+) -> Option<[f64; 2]> {
+    let problem = Problem { camera, free, observations };
+    let state = State { terms: adjustment.terms, attitudes: adjustment.attitudes.clone() };
+    let model = camera.model(&state.terms);
+    let information = problem.equations(&state, adjustment.errors).0;
+    let rows = problem.linearised(&state, adjustment.errors);
+    if rows.len() != observations.len() {
+        return None;
+    }
+    // Information of the share, its products with the other unknowns, and its gradient.
+    let (mut own, mut gradient) = (0.0, 0.0);
+    let mut mixed = DVector::zeros(information.nrows());
+    for ((observation, row), displaced) in observations.iter().zip(&rows).zip(displaced) {
+        let attitude = &state.attitudes[observation.frame];
+        let at = project(model.as_ref(), &attitude.rotate(&observation.direction))?;
+        let moved = project(model.as_ref(), &attitude.rotate(displaced))?;
+        let along = [moved.x - at.x, moved.y - at.y];
+        own += row.weight * (along[0] * along[0] + along[1] * along[1]);
+        gradient += row.gradient_along(&along);
+        for (i, slope) in &row.slopes {
+            mixed[*i] += row.weight * (slope[0] * along[0] + slope[1] * along[1]);
+        }
+    }
+    let left = own - mixed.dot(&information.cholesky()?.solve(&mixed));
+    (left > 0.0).then(|| [gradient / left, 1.0 / left.sqrt()])
 }
 
 /// Values of all unknowns.

@@ -4,7 +4,10 @@ use files::GreyImage;
 
 /// Side of a cell of the background, px: some times the image of a bright star, a small part of the gradients
 /// of lens and sky.
-const CELL_PX: usize = 64;
+pub(crate) const CELL_PX: usize = 64;
+
+/// Side of a cell under clouds, the halo of the Moon and other structure, px: still larger than a star.
+pub(crate) const FINE_CELL_PX: usize = 16;
 
 /// Limit, in standard deviations, beyond which a pixel does not belong to the background, and number of
 /// rounds.
@@ -17,6 +20,7 @@ const ROUNDING_DN: f64 = 0.288_675_134_594_812_9;
 /// Background on a grid of cells, with the noise of a pixel.
 #[derive(Debug, Clone)]
 pub struct Background {
+    cell_px: usize,
     cells: [usize; 2],
     levels_dn: Vec<f64>,
     /// Standard deviation of a pixel about the background, DN.
@@ -24,16 +28,17 @@ pub struct Background {
 }
 
 impl Background {
-    /// Estimates the background of an image.
+    /// Estimates the background of an image in cells of 64 px.
     pub fn of(image: &GreyImage) -> Self {
-        let cells = [image.columns.div_ceil(CELL_PX), image.rows.div_ceil(CELL_PX)];
-        let mut levels_dn = Vec::with_capacity(cells[0] * cells[1]);
-        for row in 0..cells[1] {
-            for column in 0..cells[0] {
-                levels_dn.push(clipped(&cell_values(image, column, row)).0);
-            }
-        }
-        let mut background = Self { cells, levels_dn, noise_dn: 0.0 };
+        Self::in_cells(image, CELL_PX)
+    }
+
+    /// Estimates the background of an image in cells of `cell_px`.
+    pub(crate) fn in_cells(image: &GreyImage, cell_px: usize) -> Self {
+        let at = |column: usize, row: usize| image.at(column, row);
+        let levels_dn = in_cells(image.columns, image.rows, cell_px, at, |values| clipped(values).0);
+        let cells = [image.columns.div_ceil(cell_px), image.rows.div_ceil(cell_px)];
+        let mut background = Self { cell_px, cells, levels_dn, noise_dn: 0.0 };
         let mut rest = Vec::with_capacity(image.values.len());
         for row in 0..image.rows {
             for column in 0..image.columns {
@@ -44,10 +49,19 @@ impl Background {
         background
     }
 
+    /// Returns the deviations of the values of a plane from 0, in cells of [`CELL_PX`]. The values are those
+    /// of an image without its background.
+    pub(crate) fn of_deviations(columns: usize, rows: usize, values: &[f64]) -> Self {
+        let at = |column: usize, row: usize| values[row * columns + column];
+        let levels_dn = in_cells(columns, rows, CELL_PX, at, |values| clipped(values).1);
+        let cells = [columns.div_ceil(CELL_PX), rows.div_ceil(CELL_PX)];
+        Self { cell_px: CELL_PX, cells, levels_dn, noise_dn: 0.0 }
+    }
+
     /// Returns the background at a pixel, DN: bilinear between the centres of the cells.
     pub fn at(&self, column: usize, row: usize) -> f64 {
         let along = |pixel: usize, count: usize| {
-            let position = (pixel as f64 + 0.5) / CELL_PX as f64 - 0.5;
+            let position = (pixel as f64 + 0.5) / self.cell_px as f64 - 0.5;
             let position = position.clamp(0.0, count as f64 - 1.0);
             let first = (position as usize).min(count.saturating_sub(2));
             (first, (first + 1).min(count - 1), position - first as f64)
@@ -61,21 +75,35 @@ impl Background {
     }
 
     /// Returns the median of the cells, DN.
-    pub fn median_dn(&self) -> f64 {
+    pub(crate) fn median_dn(&self) -> f64 {
         let mut levels = self.levels_dn.clone();
         levels.sort_by(f64::total_cmp);
         levels[levels.len() / 2]
     }
 }
 
-fn cell_values(image: &GreyImage, column: usize, row: usize) -> Vec<f64> {
-    let mut values = Vec::with_capacity(CELL_PX * CELL_PX);
-    for y in row * CELL_PX..((row + 1) * CELL_PX).min(image.rows) {
-        for x in column * CELL_PX..((column + 1) * CELL_PX).min(image.columns) {
-            values.push(image.at(x, y));
+/// Returns a figure of the values in each cell of a plane, row by row.
+fn in_cells(
+    columns: usize,
+    rows: usize,
+    cell_px: usize,
+    at: impl Fn(usize, usize) -> f64,
+    figure: impl Fn(&[f64]) -> f64,
+) -> Vec<f64> {
+    let mut figures = Vec::with_capacity(columns.div_ceil(cell_px) * rows.div_ceil(cell_px));
+    let mut values = Vec::with_capacity(cell_px * cell_px);
+    for top in (0..rows).step_by(cell_px) {
+        for left in (0..columns).step_by(cell_px) {
+            values.clear();
+            for row in top..(top + cell_px).min(rows) {
+                for column in left..(left + cell_px).min(columns) {
+                    values.push(at(column, row));
+                }
+            }
+            figures.push(figure(&values));
         }
     }
-    values
+    figures
 }
 
 /// Returns mean and standard deviation of values without those far from the mean. The first limit is about

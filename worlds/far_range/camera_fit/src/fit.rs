@@ -3,40 +3,23 @@
 use contract::{Camera, CameraFrame, Icrs, OutOfRange, PixelPoint, Rotation};
 use files::{GreyImage, PixelConversion};
 use hifitime::Epoch;
-use pipeline::CameraModel;
 use rayon::prelude::*;
 use sim::SimError;
 
-use crate::adjustment::{AdjustedCamera, Adjustment, Observation, PositionErrors, Term, adjust};
-use crate::left_out::{MAX_SQUARE, left_out_rms_px};
-use crate::photometry::{Photometry, StarLight, photometry};
-use crate::profile::{ProfileStar, StarProfile, star_profile};
+use crate::adjustment::{AdjustedCamera, Adjustment, Observation, Term};
+use crate::epoch::{EpochOffset, epoch_offset};
+use crate::left_out::MAX_SQUARE;
+use crate::mixture::group_of_one_camera;
+use crate::photometry::{Photometry, photometry};
+use crate::profile::{StarProfile, star_profile};
+use crate::reading::{Reading, has_swapped_bytes, other_reading};
+use crate::rounds::{FittedRounds, MIN_ALL_STARS, MIN_STARS, SolvedFrames, adjust_in_rounds};
 use crate::solution::{FrameSolution, solve_frames};
 use crate::sources::{ImageSources, find_sources};
 use crate::star_list::SkyList;
 
-/// Largest distance between a listed star and its source in the first and in later rounds, px.
-const GATES_PX: [f64; 4] = [4.0, 3.0, 2.0, 1.5];
-
-/// Largest distance in standard deviations in the last round: χ² with two degrees of freedom exceeds its
-/// square once in 3000. Not below half a pixel.
-const GATE_SIGMAS: f64 = 4.0;
-const MIN_GATE_PX: f64 = 0.5;
-
-/// Terms of the first round, when only the stars near the centre are matched.
-const FIRST_TERMS: [Term; 2] = [Term::FocalLength, Term::Radial1];
-
 /// Number of pixels with the largest value of all frames from which it is the saturation level.
 const MIN_SATURATED: usize = 4;
-
-/// Smallest number of stars in a frame that takes part.
-const MIN_STARS: usize = 4;
-
-/// Smallest distance of a star whose profile is fitted from any other source, px.
-const PROFILE_DISTANCE_PX: f64 = 12.0;
-
-/// Smallest number of stars of all frames.
-const MIN_ALL_STARS: usize = 8;
 
 /// A frame of the night sky.
 #[derive(Debug, Clone)]
@@ -70,6 +53,13 @@ pub enum FitError {
     OtherSize([usize; 2], String, [usize; 2]),
     /// No frame has an attitude; the reason of each.
     NoAttitude(Vec<UnsolvedFrame>),
+    /// The images are not as a camera shows the sky.
+    Reading {
+        /// Frame by which it was found.
+        name: String,
+        /// How they must be read.
+        reading: Reading,
+    },
     /// The stars of the frames are too few, or do not determine the camera.
     TooFewStars(usize),
     /// A value of the first guess is out of range.
@@ -93,10 +83,11 @@ impl std::fmt::Display for FitError {
                     write!(formatter, "\n  {}: {}", frame.name, frame.reason)?;
                 }
                 formatter.write_str(
-                    "\nCheck the field (--field-deg, --tolerance), that the images are not mirrored, and that they \
-                     show at least five stars brighter than V = 10.",
+                    "\nCheck the field (--field-deg, --tolerance), and that the images show \
+                     at least five stars brighter than V = 10.",
                 )
             }
+            Self::Reading { name, reading } => write!(formatter, "{name}: {reading}"),
             Self::TooFewStars(count) => write!(
                 formatter,
                 "{count} stars in all frames, expected at least {MIN_ALL_STARS}: add frames"
@@ -200,6 +191,11 @@ pub struct CameraFit {
     pub full_scale: f64,
     /// True if the frames were converted from colour.
     pub is_colour: bool,
+    /// Number of frames of another camera, which are left out: they are among [`CameraFit::unsolved`].
+    pub other_cameras: usize,
+    /// Epoch of the stars by their proper motions, relative to the stated time; `None` if the stars do not
+    /// determine it.
+    pub epoch: Option<EpochOffset>,
 }
 
 /// Fits a camera to frames.
@@ -208,56 +204,53 @@ pub struct CameraFit {
 /// [`FitError`].
 pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, FitError> {
     let first_camera = first_camera(frames, guess)?;
+    if let Some(frame) = frames.iter().find(|frame| has_swapped_bytes(&frame.image)) {
+        return Err(FitError::Reading { name: frame.name.clone(), reading: Reading::BytesSwapped });
+    }
     let list = SkyList::new(guess.time).map_err(FitError::Time)?;
     let saturation_dn = saturation_dn(frames);
     let sources: Vec<ImageSources> =
         frames.par_iter().map(|frame| find_sources(&frame.image, saturation_dn)).collect();
-    let solutions = solve_frames(&sources, &list.stars, &first_camera, guess.tolerance).map_err(|error| {
+    let refuse = |error: contract::ContractError| {
         FitError::Guess(OutOfRange::new("field_deg", error.to_string(), "a possible camera"))
-    })?;
+    };
+    let solutions = solve_frames(&sources, &list.stars, &first_camera, guess.tolerance).map_err(refuse)?;
     let mut unsolved = unsolved_frames(frames, &sources, &solutions);
-    let mut solved = SolvedFrames::new(&solutions);
-    if solved.frames.is_empty() {
-        return Err(FitError::NoAttitude(unsolved));
+    if unsolved.len() == frames.len() {
+        let other = other_reading(frames, &sources, &list.stars, &first_camera, guess.tolerance);
+        return Err(match other.map_err(refuse)? {
+            Some((name, reading)) => FitError::Reading { name, reading },
+            None => FitError::NoAttitude(unsolved),
+        });
     }
-    let camera = AdjustedCamera::new(&Camera {
-        focal_length_mm: first_camera.focal_length_mm * solved.focal_ratio,
-        ..first_camera.clone()
-    });
-    let mut fitted = camera.camera(&[0.0; crate::adjustment::TERMS]);
-    let mut left_out = None;
-    let mut adjusted = None;
-    for (round, gate_px) in GATES_PX.into_iter().enumerate() {
-        let is_last = round + 1 == GATES_PX.len();
-        let errors = adjusted.as_ref().filter(|_| is_last).map(|adjusted: &Adjustment| adjusted.errors);
-        solved.match_stars(&fitted, &sources, &list, gate_px, errors);
-        let observations = solved.observations(&sources, &list);
-        if observations.len() < MIN_ALL_STARS {
-            return Err(FitError::TooFewStars(observations.len()));
-        }
-        let free: &[Term] = if round == 0 { &FIRST_TERMS } else { &Term::ALL };
-        if is_last {
-            left_out = left_out_rms_px(&camera, free, &solved.attitudes, &observations);
-        }
-        let found = adjust(&camera, free, &solved.attitudes, &observations)
-            .ok_or(FitError::TooFewStars(observations.len()))?;
-        fitted = camera.camera(&found.terms);
-        solved.attitudes.clone_from(&found.attitudes);
-        adjusted = Some(found);
-    }
-    let Some(adjustment) = adjusted else { return Err(FitError::NoFrames) };
+    let (group, contradictions) = group_of_one_camera(&solutions, &first_camera, &sources, &list);
+    let members: Vec<(usize, &FrameSolution)> =
+        group.iter().filter_map(|&frame| Some((frame, solutions[frame].as_ref()?))).collect();
+    let camera = AdjustedCamera::new(&camera_of_solutions(&first_camera, &members));
+    let mut solved = SolvedFrames::new(&members);
+    let rounds =
+        adjust_in_rounds(&camera, &mut solved, &sources, &list, true).map_err(FitError::TooFewStars)?;
+    let FittedRounds { fitted, adjustment, left_out_rms_px } = rounds;
+    let left_out = |frame: usize, reason: String| UnsolvedFrame {
+        name: frames[frame].name.clone(),
+        sources: star_like(&sources[frame]),
+        reason,
+    };
     for &frame in &solved.dropped {
         let reason = format!("fewer than {MIN_STARS} stars fit the camera of the other frames");
-        let name = frames[frame].name.clone();
-        unsolved.push(UnsolvedFrame { name, sources: star_like(&sources[frame]), reason });
+        unsolved.push(left_out(frame, reason));
+    }
+    for contradiction in &contradictions {
+        unsolved.push(left_out(contradiction.frame, contradiction.reason(&fitted)));
     }
     let observations = solved.observations(&sources, &list);
+    let epoch = epoch_offset(&camera, &adjustment, &observations, guess.time).map_err(FitError::Time)?;
     let stars = observations.len();
     Ok(CameraFit {
         sigmas: Term::ALL.iter().map(|term| parameter(&camera, *term, &adjustment, &fitted)).collect(),
         frames: solved.fitted_frames(frames, &adjustment),
         rms_px: rms_px(&observations, &adjustment),
-        left_out_rms_px: left_out.unwrap_or(f64::NAN),
+        left_out_rms_px: left_out_rms_px.unwrap_or(f64::NAN),
         stars,
         matched: solved.matched_stars(&sources, &list, &adjustment),
         profile: star_profile(&fitted, &solved.profile_stars(frames, &sources)),
@@ -269,6 +262,8 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
         saturation_dn,
         full_scale: frames.iter().map(|frame| frame.image.full_scale).fold(0.0, f64::max),
         is_colour: frames.iter().any(|frame| frame.image.conversion == PixelConversion::MeanOfColours),
+        other_cameras: contradictions.len(),
+        epoch,
         camera: fitted,
         adjustment,
         unsolved,
@@ -293,8 +288,28 @@ fn saturation_dn(frames: &[SkyFrame]) -> f64 {
     if is_piled_up { f64::from(largest) } else { full_scale }
 }
 
+/// Returns the camera with the median focal length and distortion of the solutions of its frames.
+fn camera_of_solutions(first: &Camera, members: &[(usize, &FrameSolution)]) -> Camera {
+    let of_all = |value: fn(&FrameSolution) -> f64| {
+        median(members.iter().map(|(_, solution)| value(solution)).collect())
+    };
+    let ratio = of_all(|solution| solution.focal_ratio).unwrap_or(1.0);
+    let radial = of_all(|solution| solution.added_radial).unwrap_or(0.0);
+    first_with(first, ratio, radial)
+}
+
+/// Returns a camera with another focal length, over its own, and an added radial distortion, px⁻².
+pub(crate) fn first_with(first: &Camera, focal_ratio: f64, added_radial: f64) -> Camera {
+    let [k1, k2, k3] = first.radial;
+    Camera {
+        focal_length_mm: first.focal_length_mm * focal_ratio,
+        radial: [k1 + added_radial, k2, k3],
+        ..first.clone()
+    }
+}
+
 /// Returns the camera of the first guess.
-fn first_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<Camera, FitError> {
+pub(crate) fn first_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<Camera, FitError> {
     let Some(first) = frames.first() else { return Err(FitError::NoFrames) };
     let size = [first.image.columns, first.image.rows];
     for frame in frames {
@@ -350,9 +365,14 @@ fn unsolved_frames(
             continue;
         }
         let count = star_like(&sources[index]);
-        let reason = match count {
-            0 => "no star-like source".to_owned(),
-            1..=4 => format!("{count} star-like sources, five are needed"),
+        let reason = match (count, sources[index].trail_deg()) {
+            (_, Some(deg)) => format!(
+                "{count} sources are trails along {deg:.0}° from the columns to the rows: a trail of more than some \
+                 7 px has no position along it; expose shorter"
+            ),
+            (0, _) => "no star-like source".to_owned(),
+            (1, _) => "1 star-like source, five are needed".to_owned(),
+            (2..=4, _) => format!("{count} star-like sources, five are needed"),
             _ => format!("{count} star-like sources, no set of them matches the catalogue"),
         };
         unsolved.push(UnsolvedFrame { name: frames[index].name.clone(), sources: count, reason });
@@ -374,242 +394,6 @@ fn parameter(
 ) -> (Term, f64, bool) {
     let sigma = adjustment.covariance[term as usize][term as usize].sqrt();
     (term, camera.parameter_sigma(term, sigma, fitted), sigma < 0.5 * term.prior_sigma())
-}
-
-/// Frames with an attitude, and the sources that are stars.
-struct SolvedFrames {
-    /// Index of each frame among all.
-    frames: Vec<usize>,
-    attitudes: Vec<Rotation<CameraFrame, Icrs>>,
-    /// Matched sources of each frame with their stars, by index.
-    matched: Vec<Vec<(usize, usize)>>,
-    /// Index of each frame whose stars do not fit the camera of all frames.
-    dropped: Vec<usize>,
-    /// Median focal length over that of the first guess.
-    focal_ratio: f64,
-}
-
-impl SolvedFrames {
-    fn new(solutions: &[Option<FrameSolution>]) -> Self {
-        let (mut frames, mut attitudes, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
-        for (index, solution) in solutions.iter().enumerate() {
-            if let Some(solution) = solution {
-                frames.push(index);
-                attitudes.push(solution.camera_from_icrs);
-                ratios.push(solution.focal_ratio);
-            }
-        }
-        let matched = vec![Vec::new(); frames.len()];
-        let focal_ratio = median(ratios).unwrap_or(1.0);
-        Self { frames, attitudes, matched, dropped: Vec::new(), focal_ratio }
-    }
-
-    /// Matches listed stars and sources that are nearest to each other, within a gate. Frames that are left
-    /// with too few stars are dropped: nothing would determine their attitude.
-    fn match_stars(
-        &mut self,
-        camera: &Camera,
-        sources: &[ImageSources],
-        list: &SkyList,
-        gate_px: f64,
-        errors: Option<PositionErrors>,
-    ) {
-        let frames = std::mem::take(&mut self.frames);
-        let attitudes = std::mem::take(&mut self.attitudes);
-        self.matched.clear();
-        for (frame, attitude) in frames.into_iter().zip(attitudes) {
-            let places = star_places(camera, &attitude, list);
-            let matched = mutual_matches(&places, &sources[frame], gate_px, errors);
-            if matched.len() < MIN_STARS {
-                self.dropped.push(frame);
-                continue;
-            }
-            self.frames.push(frame);
-            self.attitudes.push(attitude);
-            self.matched.push(matched);
-        }
-    }
-
-    fn observations(&self, sources: &[ImageSources], list: &SkyList) -> Vec<Observation> {
-        let mut observations = Vec::new();
-        for (place, matched) in self.matched.iter().enumerate() {
-            for &(source, star) in matched {
-                let source = &sources[self.frames[place]].sources[source];
-                observations.push(Observation {
-                    frame: place,
-                    position: source.position,
-                    sigma_px: source.sigma_px,
-                    direction: *list.stars[star].direction.vector(),
-                });
-            }
-        }
-        observations
-    }
-
-    fn fitted_frames(&self, frames: &[SkyFrame], adjustment: &Adjustment) -> Vec<FittedFrame> {
-        let mut fitted = Vec::new();
-        let mut first = 0;
-        for (place, matched) in self.matched.iter().enumerate() {
-            let residuals = &adjustment.residuals[first..first + matched.len()];
-            first += matched.len();
-            let squares: f64 = residuals.iter().map(|[x, y]| x * x + y * y).sum();
-            fitted.push(FittedFrame {
-                name: frames[self.frames[place]].name.clone(),
-                camera_from_icrs: adjustment.attitudes[place],
-                stars: matched.len(),
-                rms_px: (squares / (2.0 * matched.len() as f64)).sqrt(),
-            });
-        }
-        fitted
-    }
-
-    /// Returns the stars of all frames, in the order of the residuals.
-    fn matched_stars(
-        &self,
-        sources: &[ImageSources],
-        list: &SkyList,
-        adjustment: &Adjustment,
-    ) -> Vec<MatchedStar> {
-        let mut stars: Vec<MatchedStar> = Vec::with_capacity(adjustment.residuals.len());
-        for (place, matched) in self.matched.iter().enumerate() {
-            for &(source, star) in matched {
-                let Some(&residual_px) = adjustment.residuals.get(stars.len()) else { return stars };
-                let source = &sources[self.frames[place]].sources[source];
-                stars.push(MatchedStar {
-                    frame: place,
-                    id: list.stars[star].id,
-                    magnitude: list.stars[star].magnitude,
-                    b_v: list.b_v[star],
-                    position: source.position,
-                    residual_px,
-                    sigma_px: adjustment.errors.sigma_px(source.sigma_px),
-                    flux_dn: source.flux_dn,
-                    width_px: source.width_px,
-                    significance: source.significance,
-                });
-            }
-        }
-        stars
-    }
-
-    /// Returns the stars whose profile can be fitted: no other source shares their pixels.
-    fn profile_stars<'image>(
-        &self,
-        frames: &'image [SkyFrame],
-        sources: &[ImageSources],
-    ) -> Vec<ProfileStar<'image>> {
-        let mut stars = Vec::new();
-        for (place, matched) in self.matched.iter().enumerate() {
-            let of_frame = &sources[self.frames[place]];
-            for &(index, _) in matched {
-                let source = &of_frame.sources[index];
-                let is_alone = of_frame.sources.iter().enumerate().all(|(other, rival)| {
-                    other == index || rival.position.distance(source.position) > PROFILE_DISTANCE_PX
-                });
-                if is_alone {
-                    stars.push(ProfileStar {
-                        image: &frames[self.frames[place]].image,
-                        noise_dn: of_frame.noise_dn,
-                        position: source.position,
-                        peak: source.peak,
-                        significance: source.significance,
-                    });
-                }
-            }
-        }
-        stars
-    }
-
-    fn widths_px(&self, sources: &[ImageSources]) -> Vec<f64> {
-        let mut widths = Vec::new();
-        for (place, matched) in self.matched.iter().enumerate() {
-            for &(source, _) in matched {
-                let source = &sources[self.frames[place]].sources[source];
-                if !source.is_saturated && source.width_px.is_finite() {
-                    widths.push(source.width_px);
-                }
-            }
-        }
-        widths
-    }
-
-    /// Returns the brightness of every listed star in the frames, with its flux if it has a source.
-    fn lights(&self, camera: &Camera, sources: &[ImageSources], list: &SkyList) -> Vec<StarLight> {
-        let mut lights = Vec::new();
-        for (place, matched) in self.matched.iter().enumerate() {
-            for (star, _) in star_places(camera, &self.attitudes[place], list) {
-                let source = matched.iter().find(|pair| pair.1 == star).map(|pair| pair.0);
-                let source = source.map(|source| sources[self.frames[place]].sources[source]);
-                if source.is_some_and(|source| source.is_saturated) {
-                    continue;
-                }
-                lights.push(StarLight {
-                    magnitude: list.stars[star].magnitude,
-                    b_v: list.b_v[star],
-                    flux_dn: source.map(|source| source.flux_dn),
-                    significance: source.map_or(0.0, |source| source.significance),
-                });
-            }
-        }
-        lights
-    }
-}
-
-/// Returns the listed stars on the detector, by index, with their places.
-fn star_places(
-    camera: &Camera,
-    attitude: &Rotation<CameraFrame, Icrs>,
-    list: &SkyList,
-) -> Vec<(usize, PixelPoint)> {
-    let Ok(model) = CameraModel::new(camera) else { return Vec::new() };
-    let (fx, fy) = camera.focal_length_px();
-    // The undistorted field is at most a half larger than the detector: beyond, the polynomial means nothing.
-    let reach = |side: usize, focal: f64| 0.75 * side as f64 / focal;
-    let (reach_x, reach_y) = (reach(camera.columns, fx), reach(camera.rows, fy));
-    let matrix = attitude.matrix();
-    let mut places = Vec::new();
-    for (index, star) in list.stars.iter().enumerate() {
-        let direction = matrix * star.direction.vector();
-        let is_near = direction.z > 0.0
-            && direction.x.abs() <= reach_x * direction.z
-            && direction.y.abs() <= reach_y * direction.z;
-        if let Some(at) = is_near.then(|| model.project_vector(&direction)).flatten()
-            && at.is_on_detector(camera.columns, camera.rows)
-        {
-            places.push((index, at));
-        }
-    }
-    places
-}
-
-/// Returns the pairs of sources and stars that are nearest to each other within a gate, narrowed to
-/// the errors of the positions where they are known. A second star within twice
-/// the gate blends with the first: its source belongs to neither.
-fn mutual_matches(
-    places: &[(usize, PixelPoint)],
-    frame: &ImageSources,
-    gate_px: f64,
-    errors: Option<PositionErrors>,
-) -> Vec<(usize, usize)> {
-    let mut pairs = Vec::new();
-    for (index, source) in frame.sources.iter().enumerate() {
-        if source.is_spike || source.is_saturated {
-            continue;
-        }
-        let gate_px = match errors {
-            Some(errors) => gate_px.min((GATE_SIGMAS * errors.sigma_px(source.sigma_px)).max(MIN_GATE_PX)),
-            None => gate_px,
-        };
-        let mut near = places.iter().filter(|(_, at)| at.distance(source.position) <= 2.0 * gate_px);
-        let (Some((star, at)), None) = (near.next(), near.next()) else { continue };
-        let is_only_source = frame.sources.iter().enumerate().all(|(other, rival)| {
-            other == index || rival.position.distance(*at) > source.position.distance(*at)
-        });
-        if at.distance(source.position) <= gate_px && is_only_source {
-            pairs.push((index, *star));
-        }
-    }
-    pairs
 }
 
 /// Returns the number of pixels that are a maximum in at least half of the frames; `None` for fewer than
@@ -636,51 +420,4 @@ fn hot_pixels(sources: &[ImageSources]) -> Option<usize> {
 fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
-}
-
-#[cfg(test)]
-mod tests {
-    use contract::{Angle, Direction};
-
-    use super::*;
-    use crate::sources::Source;
-
-    /// A frame without matching sources has no observations, and its turns would make the equations singular.
-    #[test]
-    fn a_frame_that_loses_its_stars_is_dropped() {
-        let image = GreyImage {
-            columns: 800,
-            rows: 600,
-            values: Vec::new(),
-            full_scale: 255.0,
-            conversion: PixelConversion::None,
-        };
-        let frame = SkyFrame { name: "a".to_owned(), image };
-        let time = Epoch::from_gregorian_utc_at_midnight(2026, 3, 1);
-        let guess = FirstGuess { field_deg: 15.0, tolerance: 0.1, pixel_um: [5.0; 2], time };
-        let camera = first_camera(&[frame], &guess).unwrap();
-        let list = SkyList::new(time).unwrap();
-        let orion = Direction::<Icrs>::from_ra_dec(Angle::from_degrees(84.0), Angle::from_degrees(-1.0));
-        let turn =
-            nalgebra::UnitQuaternion::rotation_between(orion.vector(), &nalgebra::Vector3::z()).unwrap();
-        let camera_from_icrs = Rotation::from_unit_quaternion(turn);
-        let source = |at| Source {
-            position: at,
-            flux_dn: 100.0,
-            significance: 50.0,
-            sigma_px: 0.1,
-            width_px: 1.0,
-            peak: [0, 0],
-            is_spike: false,
-            is_saturated: false,
-        };
-        let places = star_places(&camera, &camera_from_icrs, &list);
-        let sources = [places.iter().map(|(_, at)| source(*at)).collect(), Vec::new()]
-            .map(|sources| ImageSources { sources, background_dn: 0.0, noise_dn: 1.0 });
-        let solution = FrameSolution { camera_from_icrs, focal_ratio: 1.0, matched: Vec::new() };
-        let mut solved = SolvedFrames::new(&[Some(solution.clone()), Some(solution)]);
-        solved.match_stars(&camera, &sources, &list, 1.5, None);
-        assert_eq!((solved.frames, solved.dropped), (vec![0], vec![1]));
-        assert_eq!((solved.attitudes.len(), solved.matched.len()), (1, 1));
-    }
 }

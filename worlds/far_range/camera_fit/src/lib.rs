@@ -4,9 +4,11 @@
 //!
 //! 1. [`sources`]: stars and hot pixels of each image, with positions and their errors.
 //! 2. [`solution`]: attitude of each frame and the focal length, by the patterns of the stars.
-//! 3. [`adjustment`]: all frames together, by least squares: focal length, principal point, distortion, and
+//! 3. `mixture`: frames of another camera are left out. Images that are mirrored or negative, or have swapped
+//!    bytes, are recognised where no frame has an attitude (`reading`).
+//! 4. [`adjustment`]: all frames together, by least squares: focal length, principal point, distortion, and
 //!    the attitude of each frame, with the covariance of every figure.
-//! 4. `profile` and `photometry`: width and brightness of the stars.
+//! 5. `profile` and `photometry`: width and brightness of the stars.
 //!
 //! [`fit_camera`] is these steps in order. The star list has apparent places for the time of the frames, seen
 //! from the centre of the Earth: proper motion, parallax, light deflection and aberration by the Earth's
@@ -15,18 +17,24 @@
 
 pub mod adjustment;
 mod background;
+mod epoch;
 mod fit;
 mod left_out;
+mod mixture;
 mod photometry;
 mod profile;
+mod reading;
+mod rounds;
 pub mod solution;
 pub mod sources;
 mod star_list;
 
 pub use background::{Background, clipped};
+pub use epoch::EpochOffset;
 pub use fit::{
     CameraFit, FirstGuess, FitError, FittedFrame, MatchedStar, SkyFrame, UnsolvedFrame, fit_camera,
 };
 pub use photometry::Photometry;
 pub use profile::{ProfileKind, StarProfile};
+pub use reading::Reading;
 pub use sources::FLUX_REACH_PX;

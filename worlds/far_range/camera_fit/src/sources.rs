@@ -7,7 +7,7 @@
 use contract::PixelPoint;
 use files::GreyImage;
 
-use crate::background::{Background, clipped};
+use crate::background::{Background, CELL_PX, FINE_CELL_PX, clipped};
 
 /// Smoothing of the image for detection, standard deviation, px, and reach of its kernel.
 const SMOOTHING_PX: f64 = 1.0;
@@ -38,6 +38,21 @@ const SPIKE_SHARE: f64 = 0.7;
 /// Share of the saturation level above which a pixel is saturated.
 const SATURATED_SHARE: f64 = 0.98;
 
+/// Noise of the smoothed image above a background in fine cells, over that above one in large cells, below
+/// which the sky has structure: clouds, the halo of the Moon.
+const STRUCTURE_SHARE: f64 = 0.7;
+
+/// Noise in a part of the image, over that of the whole, above which it is used there.
+const ROUGH_SHARE: f64 = 1.3;
+
+/// Significance of a source that counts for the shape of all, and smallest number of such sources.
+const SHAPE_SIGNIFICANCE: f64 = 10.0;
+const SHAPE_SOURCES: usize = 5;
+
+/// Elongation of all sources in a common direction above which they are trails: that of a uniform trail of 7
+/// px.
+const TRAIL_ELONGATION: f64 = 0.36;
+
 /// Largest number of sources of an image, most significant first.
 const MAX_SOURCES: usize = 600;
 
@@ -54,6 +69,9 @@ pub struct Source {
     pub sigma_px: f64,
     /// Width of the profile, standard deviation of a Gaussian, px; NaN if it is wider than the window.
     pub width_px: f64,
+    /// Elongation by the second moments Q in the window: (Q_xx − Q_yy, 2 Q_xy)/(Q_xx + Q_yy), 0 for a round
+    /// source, of length 1 for a line.
+    pub elongation: [f64; 2],
     /// Pixel of the maximum.
     pub peak: [usize; 2],
     /// True for a hot pixel or a cosmic-ray hit.
@@ -73,29 +91,43 @@ pub struct ImageSources {
     pub noise_dn: f64,
 }
 
+impl ImageSources {
+    /// Returns the direction of trails in the image, the angle from the columns' axis towards that of the
+    /// rows, 0 to 180 degrees; `None` if the sources are no trails. A trail of more than some 7 px has no
+    /// position along it: the window of the centroid is shorter.
+    pub fn trail_deg(&self) -> Option<f64> {
+        let is_shaped = |source: &&Source| {
+            !source.is_spike && !source.is_saturated && source.significance > SHAPE_SIGNIFICANCE
+        };
+        let shaped: Vec<&Source> = self.sources.iter().filter(is_shaped).collect();
+        let median = |axis: usize| {
+            let mut values: Vec<f64> = shaped.iter().map(|source| source.elongation[axis]).collect();
+            values.sort_by(f64::total_cmp);
+            values.get(values.len() / 2).copied().unwrap_or(0.0)
+        };
+        let (along, across) = (median(0), median(1));
+        let is_trailed = shaped.len() >= SHAPE_SOURCES && libm::hypot(along, across) > TRAIL_ELONGATION;
+        is_trailed.then(|| (0.5 * libm::atan2(across, along)).to_degrees().rem_euclid(180.0))
+    }
+}
+
 /// Finds the sources of an image. `saturation_dn` is the value of a saturated pixel.
 pub fn find_sources(image: &GreyImage, saturation_dn: f64) -> ImageSources {
-    let background = Background::of(image);
-    let mut residual = Vec::with_capacity(image.values.len());
-    for row in 0..image.rows {
-        for column in 0..image.columns {
-            residual.push(image.at(column, row) - background.at(column, row));
-        }
-    }
-    let plane = Plane { columns: image.columns, rows: image.rows, values: residual };
-    let smoothed = plane.smoothed();
-    // Measured, because neighbouring pixels of a camera with processing are not independent.
-    let smoothed_noise_dn = clipped(&smoothed.values).1;
-    let threshold_dn = MIN_SIGMAS * smoothed_noise_dn;
+    let (background, plane, smoothed, smoothed_noise_dn) = flattened(image);
+    // Under clouds and moonlight the noise differs over the image.
+    let deviations = Background::of_deviations(image.columns, image.rows, &smoothed.values);
     let saturation_dn = SATURATED_SHARE * saturation_dn - background.median_dn();
     let mut sources = Vec::new();
     for row in EDGE_PX..image.rows.saturating_sub(EDGE_PX) {
         for column in EDGE_PX..image.columns.saturating_sub(EDGE_PX) {
-            if smoothed.at(column, row) < threshold_dn || !smoothed.is_local_maximum(column, row) {
+            let local_dn = deviations.at(column, row);
+            let is_rough = local_dn > ROUGH_SHARE * smoothed_noise_dn;
+            let noise_dn = if is_rough { local_dn } else { smoothed_noise_dn };
+            if smoothed.at(column, row) < MIN_SIGMAS * noise_dn || !smoothed.is_local_maximum(column, row) {
                 continue;
             }
             if let Some(mut source) = plane.measure(column, row, background.noise_dn, saturation_dn) {
-                source.significance = smoothed.at(column, row) / smoothed_noise_dn;
+                source.significance = smoothed.at(column, row) / noise_dn;
                 sources.push(source);
             }
         }
@@ -103,6 +135,26 @@ pub fn find_sources(image: &GreyImage, saturation_dn: f64) -> ImageSources {
     sources.sort_by(|a, b| b.significance.total_cmp(&a.significance));
     sources.truncate(MAX_SOURCES);
     ImageSources { sources, background_dn: background.median_dn(), noise_dn: background.noise_dn }
+}
+
+/// Returns background, the image above it, that image smoothed, and the noise of the latter, DN: in cells
+/// that follow the structure of the sky.
+fn flattened(image: &GreyImage) -> (Background, Plane, Plane, f64) {
+    let [large, fine] = [CELL_PX, FINE_CELL_PX].map(|cell_px| {
+        let background = Background::in_cells(image, cell_px);
+        let mut values = Vec::with_capacity(image.values.len());
+        for row in 0..image.rows {
+            for column in 0..image.columns {
+                values.push(image.at(column, row) - background.at(column, row));
+            }
+        }
+        let plane = Plane { columns: image.columns, rows: image.rows, values };
+        let smoothed = plane.smoothed();
+        // Measured, because neighbouring pixels of a camera with processing are not independent.
+        let noise_dn = clipped(&smoothed.values).1;
+        (background, plane, smoothed, noise_dn)
+    });
+    if fine.3 < STRUCTURE_SHARE * large.3 { fine } else { large }
 }
 
 /// Values of an image above its background.
@@ -166,6 +218,7 @@ impl Plane {
         let peak = self.highest_pixel(column, row);
         let (mut flux_dn, mut highest) = (0.0, f64::NEG_INFINITY);
         let (mut moment, mut weighted, mut variance) = (0.0, 0.0, 0.0);
+        let (mut along, mut across) = (0.0, 0.0);
         let (first_column, first_row) = (column as i64 - WINDOW_REACH, row as i64 - WINDOW_REACH);
         for y in 0..=2 * WINDOW_REACH {
             for x in 0..=2 * WINDOW_REACH {
@@ -177,6 +230,8 @@ impl Plane {
                 highest = value.max(highest);
                 weighted += weight * value;
                 moment += weight * value * 0.5 * (dx * dx + dy * dy);
+                along += weight * value * 0.5 * (dx * dx - dy * dy);
+                across += weight * value * dx * dy;
                 variance += 0.5 * weight * weight * (dx * dx + dy * dy) * noise_dn * noise_dn;
             }
         }
@@ -195,6 +250,7 @@ impl Plane {
             // much.
             sigma_px: (window_variance / (window_variance - narrowed)).min(2.0) * variance.sqrt() / weighted,
             width_px,
+            elongation: [along / moment, across / moment],
             peak,
             is_spike: self.is_spike(peak),
             is_saturated: highest >= saturation_dn,

@@ -1,5 +1,7 @@
 //! Apparent places of the catalogue's stars.
 
+use std::collections::HashMap;
+
 use contract::{Direction, Icrs, ListedStar};
 use hifitime::Epoch;
 use nalgebra::Vector3;
@@ -35,4 +37,20 @@ impl SkyList {
             stars: stars.into_iter().map(listed).collect(),
         })
     }
+}
+
+/// Returns the apparent directions of stars, by their numbers in the catalogue, at a time.
+///
+/// # Errors
+/// [`SimError`] for a time outside the ephemerides.
+pub(crate) fn directions_of(stars: &[u32], time: Epoch) -> Result<Vec<Vector3<f64>>, SimError> {
+    let observer = Observer::new(time, Vector3::zeros(), Vector3::zeros())?;
+    let catalog = Catalog::hipparcos2();
+    let of_number: HashMap<u32, &CatalogStar> = catalog.stars().iter().map(|star| (star.id, star)).collect();
+    let mut directions = Vec::with_capacity(stars.len());
+    for star in stars {
+        let direction = of_number.get(star).map(|star| observer.apparent(&StarMotion::new(star)));
+        directions.push(direction.map_or_else(Vector3::zeros, |direction| *direction.vector()));
+    }
+    Ok(directions)
 }

@@ -45,6 +45,7 @@ fn frames() -> Vec<ImageSources> {
                 significance: cells[2],
                 sigma_px: 0.1,
                 width_px: 1.0,
+                elongation: [0.0; 2],
                 peak: [cells[0].round() as usize, cells[1].round() as usize],
                 is_spike: cells[3] == 1.0,
                 is_saturated: false,

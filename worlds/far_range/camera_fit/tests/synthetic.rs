@@ -2,7 +2,7 @@
 //! integrated over the pixels, photon noise, read noise, hot pixels.
 
 use boresight_camera_fit::adjustment::Term;
-use boresight_camera_fit::{CameraFit, FirstGuess, FitError, SkyFrame, fit_camera};
+use boresight_camera_fit::{CameraFit, FirstGuess, FitError, Reading, SkyFrame, fit_camera};
 use contract::{Camera, CameraFrame, Direction, Icrs, Rotation};
 use files::{GreyImage, PixelConversion};
 use hifitime::Epoch;
@@ -200,7 +200,45 @@ fn frames_without_a_camera_are_refused_with_the_reason() {
     // A mirrored image.
     let mut mirrored = mixed.clone();
     mirrored[0].image.values.chunks_exact_mut(800).for_each(<[f32]>::reverse);
-    assert!(matches!(fit_camera(&mirrored, &guess), Err(FitError::NoAttitude(_))));
+    let reading = |frames: &[SkyFrame]| match fit_camera(frames, &guess) {
+        Err(FitError::Reading { name, reading }) => Some((name, reading)),
+        _ => None,
+    };
+    assert_eq!(reading(&mirrored), Some(("0.png".to_owned(), Reading::Mirrored)));
+    let mut negative = mixed.clone();
+    negative[0].image.values.iter_mut().for_each(|value| *value = 4095.0 - *value);
+    assert_eq!(reading(&negative), Some(("0.png".to_owned(), Reading::Negative)));
+    let mut swapped = mixed.clone();
+    let swap = |value: &mut f32| *value = f32::from((*value as u16).swap_bytes());
+    swapped[0].image.values.iter_mut().for_each(swap);
+    assert_eq!(reading(&swapped), Some(("0.png".to_owned(), Reading::BytesSwapped)));
     let narrow = FirstGuess { field_deg: 0.5 * guess.field_deg, ..guess };
     assert!(matches!(fit_camera(&mixed, &narrow), Err(FitError::NoAttitude(_))));
+}
+
+/// Frames of a camera with another focal length or another distortion are left out by name, and do not change
+/// the camera of the others.
+#[test]
+fn frames_of_another_camera_are_left_out() {
+    let sky = sky();
+    let mut random = Random(46);
+    let (truth, guess) = random_camera(&mut random);
+    let alone = frames(&mut random, &truth, &sky, 3);
+    let longer = Camera { focal_length_mm: 1.02 * truth.focal_length_mm, ..truth.clone() };
+    // 3 % more at half the diagonal of 500 px.
+    let bent = Camera { radial: [truth.radial[0] + 0.03 / 250_000.0, 0.0, 0.0], ..truth.clone() };
+    for (other, part) in
+        [(longer, "its own focal length is"), (bent, "do not fit the camera of the other frames")]
+    {
+        let mut mixed = alone.clone();
+        let mut strange = frames(&mut random, &other, &sky, 1);
+        strange[0].name = "strange.png".to_owned();
+        mixed.insert(1, strange.remove(0));
+        let fit = fit_camera(&mixed, &guess).unwrap();
+        assert_eq!((fit.frames.len(), fit.other_cameras), (3, 1));
+        let [left_out] = &fit.unsolved[..] else { panic!("{:?}", fit.unsolved) };
+        assert!(left_out.name == "strange.png" && left_out.reason.contains(part), "{left_out:?}");
+        assert!(normalised_error(&fit, &truth, Term::FocalLength).abs() < 4.0);
+        assert!(fit.epoch.is_some_and(|epoch| !epoch.is_contradiction()), "{:?}", fit.epoch);
+    }
 }

@@ -6,6 +6,8 @@ use flight_dynamics::{Aem, AemSegment, AttitudeNode, BODY_FRAME, Header};
 use hifitime::{Epoch, Unit};
 use sim::truth::clock;
 
+use crate::{FrameSet, Origin, TwinCamera, camera_toml};
+
 /// Time between the frames of a twin, s: the camera rests about each.
 const CADENCE_S: i64 = 60;
 
@@ -42,9 +44,11 @@ fn segment(frame: &FittedFrame, middle: Epoch) -> Option<AemSegment> {
     AemSegment::from_attitudes(OBJECT, BODY_FRAME, attitudes.to_vec())
 }
 
-/// Returns the scenario of a twin: the tables of `camera`, at the pointings of the file `attitudes`, with no
-/// target that a camera could see. `exposure_s` is the exposure time of the frames.
-pub fn scenario_text(fit: &CameraFit, camera: &str, attitudes: &str, time: Epoch, exposure_s: f64) -> String {
+/// Returns the scenario of a twin: its camera at the pointings of the file `attitudes`, with no target that a
+/// camera could see.
+pub fn scenario_text(set: &FrameSet, twin: &TwinCamera, origin: &Origin<'_>, attitudes: &str) -> String {
+    let camera = camera_toml(&set.fit, twin, origin);
+    let exposure_s = origin.exposure_s;
     format!(
         "# The twin of a camera: the pointings of {count} frames of it, with what was fitted to them.\n\
          # `boresight compare DIR THIS_FILE` states where its frames differ from those of the camera.\n\
@@ -91,7 +95,7 @@ pub fn scenario_text(fit: &CameraFit, camera: &str, attitudes: &str, time: Epoch
          start_utc = \"{epoch}\"\n\
          cadence_s = {CADENCE_S}.0\n\
          count = {count}\n",
-        count = fit.frames.len(),
-        epoch = format_utc(time),
+        count = set.fit.frames.len(),
+        epoch = format_utc(origin.time),
     )
 }

@@ -123,6 +123,11 @@ impl TwinCamera {
         }
     }
 
+    /// Multiplies the width of the stars.
+    pub fn scale_profile(&mut self, factor: f64) {
+        self.profile.kind = narrowed(self.profile.kind, factor);
+    }
+
     /// Corrects the twin by a comparison of its frames with those of the camera: level, noise, offsets,
     /// brightness and width where they differ, each by its difference. Faint stars, for example, are part of
     /// the noise that was measured, and the simulator draws them, too.

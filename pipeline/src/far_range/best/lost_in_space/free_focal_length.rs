@@ -1,18 +1,22 @@
-//! Search with a focal length that is known within a tolerance.
+//! Search with a focal length that is known within a tolerance, and with an unknown radial distortion.
 //!
-//! Triangles of sources are looked up at focal lengths in steps of [`STEP`], with separations that may differ
-//! by half a step. The three separations of a triangle that is found give its focal length; attitude and
-//! focal length together are four unknowns of six coordinates. As with a known focal length, the odds of all
-//! other sources decide.
+//! Triangles of sources are looked up by their shape, which is computed at focal lengths in steps of
+//! [`STEP`]: between the steps, it does not change. The three separations of a triangle that is found give
+//! its focal length; attitude and focal length together are four unknowns of six coordinates. As with a known
+//! focal length, the odds of all other sources decide.
+//!
+//! An unknown distortion is looked for in steps of the corner shift ([`SHIFT_STEP`]), the stated distortion
+//! first. At each, the sources are undistorted, and the shift is a fifth unknown with a prior of half a step:
+//! the predictions of stars far from the triangle are wide, and each star that matches narrows them.
 
 use contract::ListedStar;
 
-use super::hypothesis::{Hypothesis, Match};
+use super::hypothesis::{Hypothesis, Lens, Match, ShiftPrior};
 use super::source::ImageSource;
-use super::triangles::{TriangleSearch, pyramid_order};
+use super::triangles::{Shape, TriangleSearch, pyramid_order};
 use super::{FocalLength, FoundAttitude, LostInSpace, MAX_TRIANGLE_SOURCES};
 
-/// Step of the focal lengths at which triangles are looked up, as a share.
+/// Step of the focal lengths at which the shapes of triangles are computed, as a share.
 const STEP: f64 = 0.01;
 
 /// Number of star pairs visited in a frame after which the search ends, and number of attitudes tested.
@@ -24,70 +28,142 @@ const MAX_TESTED: usize = 30_000;
 /// attitude.
 const MIN_LOG_ODDS: f64 = 24.2;
 
+/// Step of the corner shifts.
+const SHIFT_STEP: f64 = 0.02;
+
+/// Share of the limits of visited pairs and tested attitudes at a shift other than 0.
+const OTHER_SHIFTS_SHARE: usize = 4;
+
+/// Natural logarithm of the smallest odds with an unknown distortion: 1.2 · 10¹¹, for up to 120,000 tests at
+/// all shifts.
+const MIN_LOG_ODDS_OF_SHIFTS: f64 = 25.5;
+
 /// Number of rounds for the focal length of a triangle. Chords are inversely proportional to it but for the
 /// square of the field, so each round leaves a hundredth of the error.
 const TRIANGLE_ROUNDS: usize = 3;
 
+/// Limits of a search, and what it accepts.
+struct Limits {
+    visited_pairs: usize,
+    tested: usize,
+    log_odds: f64,
+    /// Prior of the corner shift; `None` for the stated distortion.
+    shift: Option<ShiftPrior>,
+}
+
 impl LostInSpace {
-    /// Returns attitude and focal length that the sources of a frame determine. Returns `None` when none
-    /// reaches the odds, or the focal length is outside the tolerance.
+    /// Returns attitude, focal length and, if it is unknown, radial distortion that the sources of a frame
+    /// determine. Returns `None` when none reaches the odds, or the focal length is outside the tolerance.
     pub(super) fn solve_with_free_focal_length(&self, sources: &[ImageSource]) -> Option<FoundAttitude> {
+        let (visited_pairs, tested) = (MAX_VISITED_PAIRS, MAX_TESTED);
+        if self.corner_shift_bound == 0.0 {
+            let limits = Limits { visited_pairs, tested, log_odds: MIN_LOG_ODDS, shift: None };
+            return self.search(sources, &limits);
+        }
+        let sigma = 0.5 * SHIFT_STEP;
+        for mean in corner_shifts(self.corner_shift_bound) {
+            let share = if mean == 0.0 { 1 } else { OTHER_SHIFTS_SHARE };
+            let limits = Limits {
+                visited_pairs: visited_pairs / share,
+                tested: tested / share,
+                log_odds: MIN_LOG_ODDS_OF_SHIFTS,
+                shift: Some(ShiftPrior { mean, sigma }),
+            };
+            let lens = Lens { focal_ratio: 1.0, corner_shift: mean };
+            let model = self.model.with_added_radial(lens.radial(&self.model));
+            let undistorted: Vec<ImageSource> = sources
+                .iter()
+                .filter_map(|source| {
+                    Some(ImageSource { direction: model.back_project(source.position)?, ..*source })
+                })
+                .collect();
+            if let Some(found) = self.search(&undistorted, &limits) {
+                return Some(found);
+            }
+        }
+        None
+    }
+
+    /// Searches for the triangles of sources, whose directions are those by the lens of the limits.
+    fn search(&self, sources: &[ImageSource], limits: &Limits) -> Option<FoundAttitude> {
         let mut search = TriangleSearch::new(&self.stars, &self.pairs, &self.model);
         let ratios = focal_ratios(self.focal_length_tolerance);
         let mut tested = 0;
         for corners in pyramid_order(sources.len().min(MAX_TRIANGLE_SOURCES)) {
             let corners = corners.map(|corner| sources[corner]);
-            for &ratio in &ratios {
-                let [Some(a), Some(b), Some(c)] = corners.map(|corner| corner.direction_at(ratio)) else {
+            let directions = |ratio: &f64| match corners.map(|corner| corner.direction_at(*ratio)) {
+                [Some(a), Some(b), Some(c)] => Some(Shape::new([a, b, c])),
+                _ => None,
+            };
+            let Some(shapes) = ratios.iter().map(directions).collect::<Option<Vec<Shape>>>() else {
+                continue;
+            };
+            for (step, triple) in search.similar_triples(&shapes, &self.neighbours) {
+                let triangle = Triangle { corners, stars: triple.map(|star| self.stars[star as usize]) };
+                let Some(ratio) = triangle.focal_ratio(ratios[step], search.tolerance()) else { continue };
+                if !self.is_within_tolerance(ratio) {
                     continue;
-                };
-                for triple in search.matching_triples([a, b, c], 0.5 * STEP) {
-                    let triangle = Triangle { corners, stars: triple.map(|star| self.stars[star as usize]) };
-                    let Some(ratio) = triangle.focal_ratio(ratio, search.tolerance()) else { continue };
-                    if !self.is_within_tolerance(ratio) {
-                        continue;
-                    }
-                    tested += 1;
-                    if let Some(found) = self.test_triangle(sources, &triangle, ratio) {
-                        return Some(found);
-                    }
+                }
+                tested += 1;
+                if let Some(found) = self.test_triangle(sources, &triangle, ratio, limits) {
+                    return Some(found);
                 }
             }
-            if tested >= MAX_TESTED || search.visited() >= MAX_VISITED_PAIRS {
+            if tested >= limits.tested || search.visited() >= limits.visited_pairs {
                 break;
             }
         }
         None
     }
 
-    /// Returns attitude and focal length of a triangle, refined with all its stars, if the other sources
-    /// support it with the smallest odds or more.
+    /// Returns attitude and lens of a triangle, refined with all its stars, if the other sources support it
+    /// with the smallest odds or more.
     fn test_triangle(
         &self,
         sources: &[ImageSource],
         triangle: &Triangle,
         ratio: f64,
+        limits: &Limits,
     ) -> Option<FoundAttitude> {
         let corners = triangle.matches();
-        let hypothesis = Hypothesis::with_free_focal_length(&corners, &self.model, ratio)?;
+        let hypothesis = match limits.shift {
+            None => Hypothesis::with_free_focal_length(&corners, &self.model, ratio)?,
+            Some(prior) => {
+                let first = Lens { focal_ratio: ratio, corner_shift: prior.mean };
+                Hypothesis::with_free_lens(&corners, &self.model, first, prior)?
+            }
+        };
         let support = hypothesis.support(sources, &corners, &self.list);
-        if support.log_odds < MIN_LOG_ODDS {
+        if support.log_odds < limits.log_odds {
             return None;
         }
-        let focal_length = FocalLength::Free { ratio: hypothesis.focal_ratio };
+        let focal_length = match limits.shift {
+            None => FocalLength::Free { ratio: hypothesis.lens.focal_ratio },
+            // The stars determine the shift: the prior only keeps it near the bound.
+            Some(_) => FocalLength::FreeLens {
+                lens: hypothesis.lens,
+                prior: ShiftPrior { mean: 0.0, sigma: self.corner_shift_bound },
+            },
+        };
         self.refined(sources, support.matched, focal_length)
     }
 }
 
-/// Returns the focal lengths, over the stated one, at which triangles are looked up: the stated one first.
+/// Returns the corner shifts at which sources are undistorted: 0 first.
+fn corner_shifts(bound: f64) -> Vec<f64> {
+    let mut shifts = vec![0.0];
+    for step in 1..=(bound / SHIFT_STEP).round() as i32 {
+        let shift = f64::from(step) * SHIFT_STEP;
+        shifts.extend([-shift, shift]);
+    }
+    shifts
+}
+
+/// Returns the focal lengths, over the stated one, at which the shapes of triangles are computed, in
+/// increasing order.
 fn focal_ratios(tolerance: f64) -> Vec<f64> {
     let steps = (tolerance / STEP).ceil() as i32;
-    let mut ratios = vec![1.0];
-    for step in 1..=steps {
-        let share = (f64::from(step) * STEP).min(tolerance);
-        ratios.extend([1.0 + share, 1.0 - share]);
-    }
-    ratios
+    (-steps..=steps).map(|step| 1.0 + (f64::from(step) * STEP).clamp(-tolerance, tolerance)).collect()
 }
 
 /// Three sources and the stars that they may be.

@@ -1,8 +1,8 @@
-//! Hypothesis of an attitude, and if it is free of the focal length too, with its odds by the sources of a
-//! frame.
+//! Hypothesis of an attitude, and where they are free of the focal length and of a radial distortion, with
+//! its odds by the sources of a frame.
 
 use contract::{CameraFrame, Icrs, ListedStar, PixelPoint, Rotation};
-use nalgebra::{Matrix2, Matrix2x4, Matrix3, Matrix4, Vector2};
+use nalgebra::{Matrix2, Matrix2x5, Matrix3, Matrix4, Matrix5, Vector2, Vector3, Vector5};
 
 use super::source::{ImageSource, SOURCE_SIGMA_PX};
 use crate::CameraModel;
@@ -23,17 +23,54 @@ impl Match {
     }
 }
 
-/// Attitude from matched sources, for a known or a free focal length.
+/// Difference of a camera from the stated one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Lens {
+    /// Focal length over the stated one.
+    pub(super) focal_ratio: f64,
+    /// Share by which a radial distortion moves a point at half the diagonal of the detector outwards, in
+    /// addition to the stated distortion.
+    pub(super) corner_shift: f64,
+}
+
+impl Lens {
+    /// The stated camera.
+    pub(super) const STATED: Self = Self { focal_ratio: 1.0, corner_shift: 0.0 };
+
+    /// Returns the added radial distortion k1, px⁻².
+    pub(super) fn radial(&self, stated: &CameraModel) -> f64 {
+        self.corner_shift / squared_half_diagonal(stated)
+    }
+
+    fn model(&self, stated: &CameraModel) -> CameraModel {
+        stated.with_focal_ratio(self.focal_ratio).with_added_radial(self.radial(stated))
+    }
+}
+
+/// Returns the square of half the diagonal of the detector, px².
+fn squared_half_diagonal(model: &CameraModel) -> f64 {
+    let (columns, rows) = model.size_px();
+    0.25 * (columns as f64 * columns as f64 + rows as f64 * rows as f64)
+}
+
+/// Normal distribution of the corner shift of a lens before its stars are matched.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ShiftPrior {
+    pub(super) mean: f64,
+    pub(super) sigma: f64,
+}
+
+/// Attitude from matched sources, for a known or a free lens.
 #[derive(Debug, Clone)]
 pub(super) struct Hypothesis {
     pub(super) camera_from_icrs: Rotation<CameraFrame, Icrs>,
-    /// Camera with the focal length of the hypothesis.
+    /// Camera with the lens of the hypothesis.
     pub(super) model: CameraModel,
-    /// Focal length over the stated one; 1 if it is known.
-    pub(super) focal_ratio: f64,
-    /// Covariance of the errors: of the attitude as a rotation about the camera's axes, rad, and of the
-    /// natural logarithm of the focal length, 0 if it is known.
-    pub(super) covariance: Matrix4<f64>,
+    /// Lens; the stated one if it is known.
+    pub(super) lens: Lens,
+    /// Covariance of the errors: of the attitude as a rotation about the camera's axes, rad, of the natural
+    /// logarithm of the focal length, and of the corner shift; 0 for those that are known.
+    pub(super) covariance: Matrix5<f64>,
 }
 
 /// Support of an attitude by the sources of a frame.
@@ -64,6 +101,9 @@ struct Prediction {
     is_taken: bool,
 }
 
+/// Number of steps for attitude, focal length and distortion together, each of which squares the error.
+const LENS_ROUNDS: usize = 3;
+
 /// Number of rounds in which attitude and focal length are solved in turn. Each reduces the error of the
 /// focal length by the share of the sources' scatter that a turn of the camera can take up, a hundredth or
 /// less.
@@ -76,9 +116,9 @@ impl Hypothesis {
         let camera_from_icrs = attitude(matched, 1.0)?;
         let information: Matrix3<f64> =
             matched.iter().map(|pair| turn_information(&derivatives(pair, model, 1.0))).sum();
-        let mut covariance = Matrix4::zeros();
+        let mut covariance = Matrix5::zeros();
         covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&information.try_inverse()?);
-        Some(Self { camera_from_icrs, model: model.clone(), focal_ratio: 1.0, covariance })
+        Some(Self { camera_from_icrs, model: model.clone(), lens: Lens::STATED, covariance })
     }
 
     /// Returns the attitude and the focal length that best map the stars onto their sources, with equal
@@ -98,15 +138,63 @@ impl Hypothesis {
             .iter()
             .map(|pair| {
                 let by = derivatives(pair, stated, ratio) / SOURCE_SIGMA_PX;
+                let by = by.fixed_view::<2, 4>(0, 0);
                 by.transpose() * by
             })
             .sum();
+        let mut covariance = Matrix5::zeros();
+        covariance.fixed_view_mut::<4, 4>(0, 0).copy_from(&information.try_inverse()?);
         Some(Self {
             camera_from_icrs,
             model: stated.with_focal_ratio(ratio),
-            focal_ratio: ratio,
-            covariance: information.try_inverse()?,
+            lens: Lens { focal_ratio: ratio, corner_shift: 0.0 },
+            covariance,
         })
+    }
+
+    /// Returns the attitude, the focal length and the radial distortion that best map the stars onto their
+    /// sources, with equal weights and a prior of the distortion, from first values; `None` when they do not
+    /// determine them. Steps of Gauss and Newton.
+    pub(super) fn with_free_lens(
+        matched: &[Match],
+        stated: &CameraModel,
+        first: Lens,
+        prior: ShiftPrior,
+    ) -> Option<Self> {
+        let mut lens = first;
+        let undistorted = stated.with_added_radial(lens.radial(stated));
+        let mut pairs = Vec::with_capacity(matched.len());
+        for pair in matched {
+            let direction = undistorted.back_project(pair.source.position)?;
+            let camera = ImageSource { direction, ..pair.source }.direction_at(lens.focal_ratio)?;
+            pairs.push(StarPair { camera, icrs: pair.star.direction, weight: 1.0 });
+        }
+        let mut camera_from_icrs = solve_q_method(&pairs)?;
+        let squared = squared_half_diagonal(stated);
+        let mut inverse = Matrix5::zeros();
+        for _ in 0..LENS_ROUNDS {
+            let model = lens.model(stated);
+            let (mut information, mut gradient) = (Matrix5::zeros(), Vector5::zeros());
+            information[(4, 4)] = 1.0 / (prior.sigma * prior.sigma);
+            gradient[4] = (prior.mean - lens.corner_shift) * information[(4, 4)];
+            for pair in matched {
+                let r = camera_from_icrs.rotate(pair.star.direction.vector());
+                let computed = model.project_vector(&r)?;
+                let source = pair.source.position;
+                let by = lens_derivatives(&r, &model, squared) / SOURCE_SIGMA_PX;
+                let rest = Vector2::new(source.x - computed.x, source.y - computed.y) / SOURCE_SIGMA_PX;
+                information += by.transpose() * by;
+                gradient += by.transpose() * rest;
+            }
+            inverse = information.try_inverse()?;
+            let step = inverse * gradient;
+            let turn = Vector3::new(step[0], step[1], step[2]);
+            camera_from_icrs =
+                Rotation::<CameraFrame, CameraFrame>::from_rotation_vector(turn) * camera_from_icrs;
+            lens.focal_ratio *= libm::exp(step[3].clamp(-0.3, 0.3));
+            lens.corner_shift += step[4].clamp(-0.3, 0.3);
+        }
+        Some(Self { camera_from_icrs, model: lens.model(stated), lens, covariance: inverse })
     }
 
     /// Compares sources, in order of flux, with all predicted stars. The matches in `given`, from which the
@@ -143,12 +231,16 @@ impl Hypothesis {
     }
 
     fn predictions(&self, list: &StarList) -> Vec<Prediction> {
-        let focal_px = self.model.focal_px();
+        let (focal_px, squared) = (self.model.focal_px(), squared_half_diagonal(&self.model));
+        let is_lens_free = self.covariance[(4, 4)] > 0.0;
         list.predict(&self.camera_from_icrs, &self.model)
             .into_iter()
             .filter_map(|predicted| {
                 let r = self.camera_from_icrs.rotate(predicted.star.direction.vector());
-                let by = derivatives_at(r.x / r.z, r.y / r.z, focal_px);
+                let by = match is_lens_free {
+                    true => lens_derivatives(&r, &self.model, squared),
+                    false => derivatives_at(r.x / r.z, r.y / r.z, focal_px),
+                };
                 let of_hypothesis = by * self.covariance * by.transpose();
                 let covariance = of_hypothesis + Matrix2::identity() * (SOURCE_SIGMA_PX * SOURCE_SIGMA_PX);
                 Some(Prediction {
@@ -196,23 +288,38 @@ fn focal_ratio(
 
 /// Returns the derivatives of the position of a matched source, px, by a turn of the camera about its axes,
 /// rad, and by the natural logarithm of the focal length.
-fn derivatives(pair: &Match, stated: &CameraModel, focal_ratio: f64) -> Matrix2x4<f64> {
+fn derivatives(pair: &Match, stated: &CameraModel, focal_ratio: f64) -> Matrix2x5<f64> {
     let r = pair.source.direction.vector();
     let (fx, fy) = stated.focal_px();
     derivatives_at(r.x / r.z / focal_ratio, r.y / r.z / focal_ratio, (fx * focal_ratio, fy * focal_ratio))
 }
 
-/// Returns the derivatives of [`derivatives`] at a direction (x, y, 1) of the camera.
-fn derivatives_at(x: f64, y: f64, (fx, fy): (f64, f64)) -> Matrix2x4<f64> {
-    let mut by = Matrix2x4::zeros();
+/// Returns the derivatives of [`derivatives`] at a direction (x, y, 1) of the camera; 0 by a distortion.
+fn derivatives_at(x: f64, y: f64, (fx, fy): (f64, f64)) -> Matrix2x5<f64> {
+    let mut by = Matrix2x5::zeros();
     by.fixed_view_mut::<2, 3>(0, 0).copy_from(&turn_derivative(x, y, fx, fy));
     by[(0, 3)] = fx * x;
     by[(1, 3)] = fy * y;
     by
 }
 
+/// Returns the derivatives of the position of a star, px, by a turn of the camera about its axes, rad, by the
+/// natural logarithm of the focal length, and by the corner shift. `r` is the star's direction in the camera,
+/// `squared` the square of half the diagonal of the detector, px².
+fn lens_derivatives(r: &Vector3<f64>, model: &CameraModel, squared: f64) -> Matrix2x5<f64> {
+    let (fx, fy) = model.focal_px();
+    let (x, y) = (r.x / r.z, r.y / r.z);
+    let (u, v) = (fx * x, fy * y);
+    let (uu, uv, vv) = model.slopes(u, v);
+    let mut by = Matrix2::new(uu, uv, uv, vv) * derivatives_at(x, y, (fx, fy));
+    let shift = (u * u + v * v) / squared;
+    by[(0, 4)] = u * shift;
+    by[(1, 4)] = v * shift;
+    by
+}
+
 /// Returns the information of a matched source on a turn of the camera about its axes, rad⁻².
-fn turn_information(derivatives: &Matrix2x4<f64>) -> Matrix3<f64> {
+fn turn_information(derivatives: &Matrix2x5<f64>) -> Matrix3<f64> {
     let by = derivatives.fixed_view::<2, 3>(0, 0) / SOURCE_SIGMA_PX;
     by.transpose() * by
 }

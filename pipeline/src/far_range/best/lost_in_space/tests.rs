@@ -11,7 +11,7 @@ pub(in super::super) struct Random(pub(in super::super) u64);
 
 impl Random {
     /// Returns a uniform number in (0, 1).
-    fn uniform(&mut self) -> f64 {
+    pub(in super::super) fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
         z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
@@ -369,4 +369,59 @@ fn triples_come_in_the_order_of_pyramid() {
     assert_eq!(four, [[0, 1, 2], [1, 2, 3], [0, 1, 3], [0, 2, 3]]);
     assert_eq!(pyramid_order(25).count(), 2300);
     assert_eq!(pyramid_order(2).count() + pyramid_order(0).count(), 0);
+}
+
+/// Returns the numbers of fields that are solved and false, of `fields` whose focal length is wrong by up to
+/// a tenth and whose corners are moved by `shift`.
+fn solved_with_distortion(stated: &CameraModel, shift: f64, fields: u32) -> (u32, u32) {
+    let sky = real_sky();
+    let solver = LostInSpace::new(&sky, stated, 30.0, 0.12).with_unknown_distortion(0.08);
+    let mut random = Random(83);
+    let (mut solved, mut wrong, mut done) = (0, 0, 0);
+    while done < fields {
+        let attitude = random.attitude();
+        let lens = Lens { focal_ratio: 0.9 + 0.2 * random.uniform(), corner_shift: shift };
+        let model = stated.with_focal_ratio(lens.focal_ratio).with_added_radial(lens.radial(stated));
+        let mut stars = StarList::new(&sky, 30.0, &model).predict(&attitude, &model);
+        if stars.len() < 20 {
+            continue;
+        }
+        done += 1;
+        stars.sort_by(|a, b| a.star.magnitude.total_cmp(&b.star.magnitude));
+        let positions: Vec<PixelPoint> = stars.iter().map(|star| star.position).collect();
+        let magnitudes: Vec<f64> = stars.iter().map(|star| star.star.magnitude).collect();
+        let detectable = MAX_DETECTABLE.min(stars.len());
+        let sources = sources(&mut random, &model, &positions, &magnitudes, detectable);
+        let Some(found) = solver.solve(&sources) else { continue };
+        solved += 1;
+        let boresight = |attitude: Rotation<CameraFrame, Icrs>| attitude.inverse() * Direction::z();
+        let off = boresight(found.camera_from_icrs).separation(&boresight(attitude)).degrees();
+        let misses = found.matched.iter().filter(|(source, star)| {
+            let truth = model.project(&(attitude * star.direction));
+            truth.is_none_or(|truth| truth.distance(sources[*source].0) > 4.0)
+        });
+        wrong += u32::from(off > 0.3 || 4 * misses.count() > found.matched.len());
+    }
+    (solved, wrong)
+}
+
+#[test]
+fn an_unknown_distortion_is_found_with_the_focal_length() {
+    for (name, stated) in [("argon", argon()), ("60 degrees", camera(1024, 1024, 60.0, 0.0))] {
+        for shift in [-0.08, 0.04] {
+            let (solved, wrong) = solved_with_distortion(&stated, shift, 4);
+            println!("{name}, corners moved by {shift}: {solved} of 4 solved, {wrong} false");
+            assert!(solved == 4 && wrong == 0, "{name} {shift}: {solved} {wrong}");
+        }
+    }
+}
+
+/// More attitudes are tested than with a known distortion, with higher odds: still none is found.
+#[test]
+fn sources_at_random_have_no_attitude_at_any_distortion() {
+    let model = camera(1024, 1024, 30.0, 0.0);
+    let solver = LostInSpace::new(&real_sky(), &model, 30.0, 0.1).with_unknown_distortion(0.08);
+    let mut random = Random(13);
+    let sources: Vec<_> = (0..40).map(|_| (random.position(&model), random.uniform())).collect();
+    assert!(solver.solve(&sources).is_none());
 }
