@@ -198,7 +198,7 @@ const NO_READERS: [(&str, &str); 1] = [("sim/src/docking/simulator.rs", "passes 
 
 /// Crates that compute: their readers of input deny the lints, file by file. The other crates deny them as a
 /// whole.
-const COMPUTING: [&str; 13] = [
+const COMPUTING: [&str; 14] = [
     "boresight-camera-fit",
     "boresight-draws",
     "boresight-navigation",
@@ -212,6 +212,7 @@ const COMPUTING: [&str; 13] = [
     "boresight-sim",
     "boresight-statistics",
     "boresight-truth",
+    "boresight-twin",
 ];
 
 /// Developers' programs, which only read their own input.

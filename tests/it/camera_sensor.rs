@@ -104,7 +104,9 @@ fn a_sensor_is_measured_written_and_used() {
     let gain = value("mine.toml", "sensor", "gain_e_per_dn");
     assert!((gain - 5.0).abs() < 0.25 && value("mine.toml", "sensor", "bias_dn") > 50.0);
     let zero_point = |file| value(file, "radiometry", "zero_point_e_per_s");
-    let ratio = zero_point("mine.toml") / zero_point("plain.toml") / gain;
+    // The same DN are electrons by the gain of each file.
+    let ratio_of_gains = gain / value("plain.toml", "sensor", "gain_e_per_dn");
+    let ratio = zero_point("mine.toml") / zero_point("plain.toml") / ratio_of_gains;
     assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
     bench.boresight("sky --ra 30 --dec 0 --camera mine.toml -o again.png").done();
     bench.write("wrong.toml", "[sensor]\nbit_depth = 99\n");

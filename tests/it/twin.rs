@@ -56,6 +56,14 @@ fn a_twin_is_compared_with_its_camera() {
     let document = bench.boresight("compare frames other.toml --json").json();
     assert!(!is_alike(figure(&document, "focal_length")) && !is_alike(figure(&document, "background")));
     assert_eq!(document["ok"], false);
+
+    // A gate on the simulator: the comparison is as it was, or not.
+    let kept = bench.boresight("compare frames twin.toml --json").stdout;
+    bench.write("kept.json", &kept);
+    bench.boresight("compare frames twin.toml --baseline kept.json").done();
+    bench.boresight("compare frames other.toml --baseline kept.json").found(&["changed: background", "was"]);
+    bench.write("kept.json", "{}");
+    bench.boresight("compare frames twin.toml --baseline kept.json").refused(&["kept.json", "figures"]);
 }
 
 #[test]

@@ -4,12 +4,13 @@ use std::path::{Path, PathBuf};
 
 use camera_fit::FirstGuess;
 use clap::Args;
+use config::toml_file;
 use far_range::FarRangeScenario;
 use far_range_views::likeness_table;
-use files::{Failure, parse_utc};
+use files::{Failure, FileError, parse_utc};
 use run::ScenarioSource;
 use serde_json::{Value, json};
-use twin::likeness::{Comparison, Likeness, compare as compare_sets};
+use twin::likeness::{Change, Comparison, KeptComparison, Likeness, changes, compare as compare_sets};
 use twin::{FrameSet, twin_frames};
 
 use super::fit::fitted;
@@ -35,10 +36,15 @@ pub(in crate::command) struct CompareArguments {
     /// Also write figures, spectra and pictures as one HTML file, replaced if it is a report
     #[arg(long, value_name = "FILE", value_parser = output_path())]
     report: Option<PathBuf>,
+    /// An earlier comparison, the output of --json: the exit status is then 1 if a figure changed by more
+    /// than its error, and not if one differs
+    #[arg(long, value_name = "FILE.json")]
+    baseline: Option<PathBuf>,
 }
 
 pub(in crate::command) fn compare(arguments: &CompareArguments, output: &Output) -> Result<Answer, Failure> {
     check_option(arguments.report.as_ref())?;
+    let kept = arguments.baseline.as_deref().map(read_kept).transpose()?;
     let paths = images(&arguments.directory)?;
     let source = ScenarioSource::read(&arguments.twin.to_string_lossy())?;
     let scenario: &FarRangeScenario = source.typed("boresight compare")?;
@@ -54,12 +60,38 @@ pub(in crate::command) fn compare(arguments: &CompareArguments, output: &Output)
     if let Some(path) = &arguments.report {
         write_likeness_page(&camera, &twin, &found, &arguments.directory, path)?;
     }
+    let changed = kept.map(|kept| changes(&kept, &found.figures));
     let is_alike = found.figures.iter().all(Likeness::is_indistinguishable);
-    output.answer(
-        &document(&camera, &twin, &found),
-        likeness_table(&camera, &twin, &found, output.is_terminal()),
-    )?;
-    Ok(if is_alike { Answer::Yes } else { Answer::No })
+    let mut text = likeness_table(&camera, &twin, &found, output.is_terminal());
+    for change in changed.iter().flatten() {
+        text.push_str(&format!("\nchanged: {}", change_words(change)));
+    }
+    let is_as_before = changed.as_ref().map_or(is_alike, Vec::is_empty);
+    output.answer(&document(&camera, &twin, &found, changed.as_deref()), text)?;
+    Ok(if is_as_before { Answer::Yes } else { Answer::No })
+}
+
+/// Reads an earlier comparison.
+///
+/// # Errors
+/// [`Failure::Usage`] for a file that is no comparison.
+fn read_kept(path: &Path) -> Result<KeptComparison, Failure> {
+    let text = toml_file::read_text(path).map_err(|source| FileError::io(path, "read", source))?;
+    serde_json::from_str(&text).map_err(|error| {
+        Failure::Usage(format!(
+            "--baseline: {}: {error}; expected the output of `boresight compare --json`",
+            path.display()
+        ))
+    })
+}
+
+fn change_words(change: &Change) -> String {
+    match change {
+        Change::Moved { code, differences: [before, now], limit } => {
+            format!("{code}: the difference was {before:.4}, and is {now:.4} (± {limit:.4})")
+        }
+        Change::Lost { code } => format!("{code}: is in the baseline, and the frames no longer give it"),
+    }
 }
 
 /// Returns what the scenario of the twin says of its camera.
@@ -75,9 +107,11 @@ fn twin_guess(scenario: &FarRangeScenario, path: &Path) -> Result<FirstGuess, Fa
 }
 
 /// Returns the comparison as JSON.
-fn document(camera: &FrameSet, twin: &FrameSet, found: &Comparison) -> Value {
+fn document(camera: &FrameSet, twin: &FrameSet, found: &Comparison, changed: Option<&[Change]>) -> Value {
+    let is_alike = found.figures.iter().all(Likeness::is_indistinguishable);
     json!({
-        "ok": found.figures.iter().all(Likeness::is_indistinguishable),
+        "ok": changed.map_or(is_alike, <[Change]>::is_empty),
+        "changed": changed.map(|changes| changes.iter().map(change_words).collect::<Vec<_>>()),
         "frames": [camera.fit.frames.len(), twin.fit.frames.len()],
         "shared_stars": found.stars.len(),
         "figures": found.figures,

@@ -64,7 +64,7 @@ pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, F
         twin.scale_profile(2.0);
     }
     for warning in warnings(&set.fit, guess.time) {
-        output.note(&format!("warning: {warning}"));
+        output.note(format!("warning: {warning}"));
     }
     let mut text = fit_text(&set.fit);
     if let Some(path) = &arguments.report {

@@ -122,7 +122,7 @@ fn time_of_headers(headers: &[SkyHeader], output: &Output) -> Epoch {
     };
     let span = *last - *first;
     if span.to_unit(Unit::Day) > MAX_SPAN_DAYS {
-        output.note(&format!(
+        output.note(format!(
             "warning: the frames span {:.0} days, and one time is used for all: star places change by half an arc \
              second per day",
             span.to_unit(Unit::Day)

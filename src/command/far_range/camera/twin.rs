@@ -47,7 +47,7 @@ pub(in crate::command) fn twin(arguments: &TwinArguments, output: &Output) -> Re
     let guess = arguments.guess.first_guess(directory, &paths, output)?;
     let Some(set) = fitted(directory, frames, &guess, output)? else { return Ok(Answer::No) };
     for warning in warnings(&set.fit, guess.time) {
-        output.note(&format!("warning: {warning}"));
+        output.note(format!("warning: {warning}"));
     }
     let origin = Origin { directory, time: guess.time, exposure_s: arguments.guess.exposure };
     let measured = measured_sensor(&set, sensor.as_ref(), origin.exposure_s)?;
@@ -100,7 +100,7 @@ fn corrected_scenario(
                 }
             }
             Err(error) => {
-                output.note(&format!(
+                output.note(format!(
                     "warning: the frames of the twin have no camera, and do not correct it: {error}"
                 ));
                 break;

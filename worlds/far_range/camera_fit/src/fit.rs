@@ -10,13 +10,13 @@ use crate::adjustment::{AdjustedCamera, Adjustment, Observation, Term};
 use crate::epoch::{EpochOffset, epoch_offset};
 use crate::left_out::MAX_SQUARE;
 use crate::mixture::group_of_one_camera;
-use crate::photometry::{Photometry, photometry};
-use crate::profile::{StarProfile, star_profile};
 use crate::reading::{Reading, has_swapped_bytes, other_reading};
 use crate::rounds::{FittedRounds, MIN_ALL_STARS, MIN_STARS, SolvedFrames, adjust_in_rounds};
 use crate::solution::{FrameSolution, solve_frames};
 use crate::sources::{ImageSources, find_sources};
 use crate::star_list::SkyList;
+use crate::stars::photometry::{Photometry, photometry};
+use crate::stars::profile::{StarProfile, star_profile};
 
 /// Number of pixels with the largest value of all frames from which it is the saturation level.
 const MIN_SATURATED: usize = 4;

@@ -8,7 +8,7 @@
 //!    bytes, are recognised where no frame has an attitude (`reading`).
 //! 4. [`adjustment`]: all frames together, by least squares: focal length, principal point, distortion, and
 //!    the attitude of each frame, with the covariance of every figure.
-//! 5. `profile` and `photometry`: width and brightness of the stars.
+//! 5. `stars`: width and brightness of the stars.
 //!
 //! [`fit_camera`] is these steps in order. The star list has apparent places for the time of the frames, seen
 //! from the centre of the Earth: proper motion, parallax, light deflection and aberration by the Earth's
@@ -21,20 +21,19 @@ mod epoch;
 mod fit;
 mod left_out;
 mod mixture;
-mod photometry;
-mod profile;
 mod reading;
 mod rounds;
 pub mod solution;
 pub mod sources;
 mod star_list;
+mod stars;
 
 pub use background::{Background, clipped};
 pub use epoch::EpochOffset;
 pub use fit::{
     CameraFit, FirstGuess, FitError, FittedFrame, MatchedStar, SkyFrame, UnsolvedFrame, fit_camera,
 };
-pub use photometry::Photometry;
-pub use profile::{ProfileKind, StarProfile};
 pub use reading::Reading;
 pub use sources::FLUX_REACH_PX;
+pub use stars::photometry::Photometry;
+pub use stars::profile::{ProfileKind, StarProfile};

@@ -6,11 +6,11 @@ use pipeline::CameraModel;
 use crate::adjustment::{AdjustedCamera, Adjustment, Observation, PositionErrors, TERMS, Term, adjust};
 use crate::fit::{FittedFrame, MatchedStar, SkyFrame};
 use crate::left_out::left_out_rms_px;
-use crate::photometry::StarLight;
-use crate::profile::ProfileStar;
 use crate::solution::FrameSolution;
 use crate::sources::ImageSources;
 use crate::star_list::SkyList;
+use crate::stars::photometry::StarLight;
+use crate::stars::profile::ProfileStar;
 
 /// Largest distance between a listed star and its source in the first and in later rounds, px.
 const GATES_PX: [f64; 4] = [4.0, 3.0, 2.0, 1.5];

@@ -21,10 +21,7 @@ pub fn twin_frames(scenario: &FarRangeScenario, folder: &Path) -> Result<Vec<Sky
     let simulation = scenario.simulation()?;
     let simulator = Simulator::new(&simulation, folder)?;
     let count: u64 = scenario.schedule.iter().map(|group| group.count).sum();
-    (0..count)
-        .into_par_iter()
-        .map_init(|| simulator.camera(), |camera, number| expose(camera, number))
-        .collect()
+    (0..count).into_par_iter().map_init(|| simulator.camera(), expose).collect()
 }
 
 fn expose(camera: &mut Result<SimulatedCamera<'_>, sim::SimError>, number: u64) -> Result<SkyFrame, Failure> {

@@ -11,6 +11,7 @@
 //! 4. `geometry`: focal length, principal point and distortion.
 
 pub mod background;
+mod baseline;
 mod compare;
 mod difference;
 mod estimate;
@@ -20,6 +21,7 @@ mod offsets;
 mod spectrum;
 pub mod stars;
 
+pub use baseline::{Change, KeptComparison, KeptFigure, changes};
 pub use compare::{Comparison, Histogram, compare};
 pub use difference::{Likeness, NotCompared, Unit};
 pub use estimate::Estimate;

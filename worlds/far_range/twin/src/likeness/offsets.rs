@@ -51,7 +51,7 @@ mod tests {
     fn a_fixed_pattern_counts_once() {
         let pattern = vec![1.0, -1.0, 2.0, -2.0, 0.0];
         // Σ x²/(n − 1) = 10/4; error 2.5 √(2/4).
-        let one = variance_of_offsets(&[pattern.clone()]).unwrap();
+        let one = variance_of_offsets(std::slice::from_ref(&pattern)).unwrap();
         assert!((one.value - 2.5).abs() < 1e-12 && (one.sigma - 2.5 * 0.5_f64.sqrt()).abs() < 1e-12);
         let four =
             variance_of_offsets(&[pattern.clone(), pattern.clone(), pattern.clone(), pattern]).unwrap();
