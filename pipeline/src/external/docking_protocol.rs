@@ -1,8 +1,8 @@
 //! Lines exchanged with an external docking pipeline: JSON, one object per line, UTF-8.
 //!
 //! Greeting, to the process (metres; `marks` are corners y1, y2 in the disk's plane):
-//! ```json {"boresight_pipeline": 1, "world": "docking", "cameras": [{"columns": 768, "rows": 576,
-//! "focal_length_mm": 24.2, "...": 0}],
+//! ```json
+//! {"boresight_pipeline": 1, "world": "docking", "cameras": [{"columns": 768, "rows": 576, "focal_length_mm": 24.2, "...": 0}],
 //!  "bit_depth": 8, "target": {"name": "progress", "mark_circle_radius_m": 0.25, "marks": [[[0, 0], [0, 0], [0, 0], [0, 0]]],
 //!  "cross": {"height_m": 0.3, "...": 0}, "...": 0}}
 //! ```
@@ -10,8 +10,8 @@
 //!
 //! Field, to the process (`image` is a grey PNG that is removed after the answer; its row k is the camera's
 //! row k, 2k or 2k + 1 for `lines` `all`, `even` or `odd`):
-//! ```json {"field": 12, "image": "/tmp/12.png", "lines": "even", "time_s": 0.24, "camera": 0, "contrast":
-//! 1.0, "brightness": 0.0}
+//! ```json
+//! {"field": 12, "image": "/tmp/12.png", "lines": "even", "time_s": 0.24, "camera": 0, "contrast": 1.0, "brightness": 0.0}
 //! ```
 //! The answer to it, with angles in degrees. The standard deviations and the requested digitiser setting
 //! (`contrast`, `brightness`) are optional:

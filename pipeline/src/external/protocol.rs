@@ -14,8 +14,8 @@
 //! Frame, to the process (`image` is a FITS file of 16 bits that is removed after the answer; `windows` are
 //! the transmitted regions as [x, y, columns, rows], `null` when the whole image was transmitted; the
 //! velocity is the one about the Earth, `null` if unknown):
-//! ```json {"frame": 12, "image": "/tmp/12.fits", "windows": null, "telemetry": {"time_utc":
-//! "2012-04-25T00:00:00.000000000Z",
+//! ```json
+//! {"frame": 12, "image": "/tmp/12.fits", "windows": null, "telemetry": {"time_utc": "2012-04-25T00:00:00.000000000Z",
 //!  "exposure_s": 0.25, "q_sc_j2000": [1, 0, 0, 0], "v_orbital_j2000_km_s": [7.5, 0, 0]}}
 //! ```
 //! The answer to it. A detection has a position in pixels (the centre of the first pixel is 0, 0). Optional
