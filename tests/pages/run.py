@@ -279,7 +279,7 @@ def prove(program):
         first_missing("a\n…\nc\n", "a\nb\nc\n") != [],
         first_missing("c\na\n", "a\nb\nc\n") != ["a"],
         fault_of_boresight(["boresight", "run", "argon", "--frame", "1"], known) is None,
-        fault_of_boresight(["boresight", "compare", "a", "b"], known) is None,
+        fault_of_boresight(["boresight", "contrast", "a", "b"], known) is None,
         fault_of_boresight(["boresight", "run", "argon", "--frames", "1"], known) is not None,
         fault_of_python(["python3", "examples/absent.py"]) is None,
         fault_of_cargo(["cargo", "run", "--bin", "absent"]) is None,

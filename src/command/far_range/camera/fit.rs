@@ -58,22 +58,23 @@ pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, F
     }
     let Some(mut set) = fitted(directory, frames, &guess, output)? else { return Ok(Answer::No) };
     let measured = measured_sensor(&set, sensor.as_ref(), arguments.guess.exposure)?;
-    let mut twin = TwinCamera::of(&set, measured);
+    let is_twin_needed = arguments.out.is_some() || arguments.report.is_some();
+    let mut twin = is_twin_needed.then(|| TwinCamera::of(&set, measured));
     if arguments.bayer.is_some() {
         camera_of_pixels(&mut set.fit, size[0], size[1]);
-        twin.scale_profile(2.0);
+        twin.iter_mut().for_each(|twin| twin.scale_profile(2.0));
     }
     for warning in warnings(&set.fit, guess.time) {
         output.note(format!("warning: {warning}"));
     }
     let mut text = fit_text(&set.fit);
-    if let Some(path) = &arguments.report {
-        write_fit_page(&set, &twin, directory, path)?;
+    if let (Some(path), Some(twin)) = (&arguments.report, &twin) {
+        write_fit_page(&set, twin, directory, path)?;
         text.push_str(&format!("\nreport in {}", path.display()));
     }
-    if let Some(out) = &arguments.out {
+    if let (Some(out), Some(twin)) = (&arguments.out, &twin) {
         let origin = Origin { directory, time: guess.time, exposure_s: arguments.guess.exposure };
-        AtomicFile::with_text(out, &camera_toml(&set.fit, &twin, &origin))?.commit_new()?;
+        AtomicFile::with_text(out, &camera_toml(&set.fit, twin, &origin))?.commit_new()?;
         text.push_str(&format!("\ncamera in {}", out.display()));
     }
     output.answer(&document(&set.fit, guess.time), text)?;

@@ -106,16 +106,19 @@ fn in_cells(
     figures
 }
 
+/// Returns the median of at least one value: of an even number, the greater of the two in the middle.
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
 /// Returns mean and standard deviation of values without those far from the mean. The first limit is about
 /// the median, by the deviations of half of the values.
 pub fn clipped(values: &[f64]) -> (f64, f64) {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let mut mean = sorted[sorted.len() / 2];
-    let mut deviations: Vec<f64> = sorted.iter().map(|value| (value - mean).abs()).collect();
-    deviations.sort_by(f64::total_cmp);
+    let mut mean = median(values.to_vec());
+    let deviations: Vec<f64> = values.iter().map(|value| (value - mean).abs()).collect();
     // 1.4826: the standard deviation of normal values in units of their median deviation.
-    let mut sigma = 1.4826 * deviations[deviations.len() / 2];
+    let mut sigma = 1.4826 * median(deviations);
     if sigma == 0.0 {
         // More than half of the values are equal: whole numbers.
         sigma = 1.0;
