@@ -22,7 +22,7 @@ import tempfile
 import galsim
 import numpy as np
 
-from check import MIN_DETECTABLE, Camera, Sky, draw, write
+from check import MIN_DETECTABLE, Camera, Sky, draw, information, write
 
 WITHIN, NEES = 0.985, (0.8, 1.25)
 # Names of the parameters of a fit, with their true values.
@@ -73,6 +73,15 @@ def fitted(program, folder, camera, told_deg):
     return json.loads(done.stdout)
 
 
+def bound_px(camera, stars):
+    """Root mean square along an axis of the errors that no unbiased position of these stars can undercut
+    (Cramer and Rao), with shot noise, read noise and rounding."""
+    fluxes, known = information(camera, camera.psf)
+    variance = 0.5 * np.trace(np.linalg.inv(known), axis1=1, axis2=2)
+    electrons = np.array([star["flux_dn"] for star in stars]) * camera.gain_e_per_dn
+    return float(np.sqrt(np.mean(np.exp(np.interp(np.log(electrons), np.log(fluxes), np.log(variance))))))
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program")
@@ -80,7 +89,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     sky = Sky()
-    errors, missed, unsolved, frames_with_stars = [], 0, 0, 0
+    errors, ratios, missed, unsolved, frames_with_stars = [], [], 0, 0, 0
     for number in range(arguments.cameras):
         random = np.random.default_rng([arguments.seed, number])
         camera = random_camera(random)
@@ -113,14 +122,18 @@ def main():
             errors.append(error)
             line.append(f"{error:+.1f}")
         left_out = found["left_out_rms_px"]
+        bound = bound_px(camera, found["matched_stars"])
+        if left_out is not None:
+            ratios.append(left_out / bound)
         print(
             f"{camera.name}, {frames} frames, {rich} with {MIN_DETECTABLE} stars, {len(found['frames'])} solved, {found['stars']} stars, "
-            f"left out {left_out if left_out is None else round(left_out, 3)} px, errors in sigma {' '.join(line)}",
+            f"left out {left_out if left_out is None else round(left_out, 3)} px (bound {bound:.3f}), errors in sigma {' '.join(line)}",
             flush=True,
         )
     errors = np.array(errors)
     within, nees = np.mean(np.abs(errors) < 3), np.mean(errors**2)
     print(f"{within:.1%} of {len(errors)} within 3 sigma, NEES per dimension {nees:.2f}, {missed} cameras not found, {unsolved} of {frames_with_stars} frames with stars not solved")
+    print(f"stars left out over the bound of their positions: median {np.median(ratios):.2f}, {np.quantile(ratios, 0.1):.2f} to {np.quantile(ratios, 0.9):.2f}")
     return 0 if within >= WITHIN and NEES[0] <= nees <= NEES[1] and missed == 0 else 1
 
 

@@ -87,7 +87,10 @@ enum Command {
     ///
     /// `boresight compare` then states where the simulated frames differ from those of the camera.
     Twin(far_range::TwinArguments),
-    /// State where the frames of a camera differ from those of its simulated twin; exit status 1 if they do
+    /// State where the frames of a camera differ from those of its simulated twin
+    ///
+    /// Each figure has an interval of 95 %, so that one of twenty differs by chance. The exit status is 1 if
+    /// they differ as a whole, by more than chance gives in one of so many.
     Compare(far_range::CompareArguments),
     /// Reproduce the tables and figures of a paper whose method is built in
     Reproduce(reproduce::ReproduceArguments),

@@ -91,7 +91,11 @@ pub(crate) fn read(path: &Path, size: Option<RequiredSize<'_>>) -> Result<RawIma
 /// read.
 pub fn read_sky_header(path: &Path) -> Result<SkyHeader, FileError> {
     in_image_unit(path, |header, _, _, _| {
-        Ok(SkyHeader { time: header.middle_of_exposure()?, field_deg: header.field_deg()? })
+        Ok(SkyHeader {
+            time: header.middle_of_exposure()?,
+            field_deg: header.field_deg()?,
+            exposure_s: header.exposure_s()?,
+        })
     })
 }
 
@@ -309,6 +313,18 @@ impl Header<'_> {
         }
     }
 
+    /// Returns the exposure time, s: `EXPTIME`; `None` without it.
+    fn exposure_s(&self) -> Result<Option<f64>, FileError> {
+        if self.value("EXPTIME").is_none() {
+            return Ok(None);
+        }
+        let exposure_s = self.number("EXPTIME", 0.0)?;
+        if !(0.0..=MAX_EXPOSURE_S).contains(&exposure_s) {
+            return Err(self.error("EXPTIME", exposure_s, format!("0 to {MAX_EXPOSURE_S} s")));
+        }
+        Ok(Some(exposure_s))
+    }
+
     /// Returns the middle of the exposure: `DATE-AVG`, or half of `EXPTIME`, s, after `DATE-OBS`, the
     /// beginning (FITS standard 4.0, 9.5). `None` without these, and for a `DATE-OBS` without a time of day.
     fn middle_of_exposure(&self) -> Result<Option<Epoch>, FileError> {
@@ -319,10 +335,7 @@ impl Header<'_> {
         if !has_time {
             return Ok(None);
         }
-        let exposure_s = self.number("EXPTIME", 0.0)?;
-        if !(0.0..=MAX_EXPOSURE_S).contains(&exposure_s) {
-            return Err(self.error("EXPTIME", exposure_s, format!("0 to {MAX_EXPOSURE_S} s")));
-        }
+        let exposure_s = self.exposure_s()?.unwrap_or(0.0);
         Ok(self.utc("DATE-OBS")?.map(|start| start + Unit::Second * (0.5 * exposure_s)))
     }
 

@@ -35,4 +35,6 @@ pub struct SkyHeader {
     pub time: Option<Epoch>,
     /// Width of the field along the columns by world coordinates, degrees.
     pub field_deg: Option<f64>,
+    /// Exposure time, s.
+    pub exposure_s: Option<f64>,
 }

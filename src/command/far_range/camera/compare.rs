@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use camera_fit::FirstGuess;
+use camera_fit::{FirstGuess, SkyFrame};
 use clap::Args;
 use config::toml_file;
 use far_range::FarRangeScenario;
@@ -10,7 +10,7 @@ use far_range_views::likeness_table;
 use files::{Failure, FileError, parse_utc};
 use run::ScenarioSource;
 use serde_json::{Value, json};
-use twin::likeness::{Change, Comparison, KeptComparison, Likeness, changes, compare as compare_sets};
+use twin::likeness::{Change, Comparison, KeptComparison, changes, compare as compare_sets};
 use twin::{FrameSet, twin_frames};
 
 use super::fit::fitted;
@@ -51,6 +51,7 @@ pub(in crate::command) fn compare(arguments: &CompareArguments, output: &Output)
     let of_twin = twin_guess(scenario, &arguments.twin)?;
     let of_camera = FirstGuess { tolerance: TOLERANCE, ..of_twin };
     let frames = read_frames(&paths, output)?;
+    check_size(&frames, scenario, &arguments.directory)?;
     let simulated = twin_frames(scenario, &source.folder)?;
     let Some(camera) = fitted(&arguments.directory, frames, &of_camera, output)? else {
         return Ok(Answer::No);
@@ -61,7 +62,7 @@ pub(in crate::command) fn compare(arguments: &CompareArguments, output: &Output)
         write_likeness_page(&camera, &twin, &found, &arguments.directory, path)?;
     }
     let changed = kept.map(|kept| changes(&kept, &found.figures));
-    let is_alike = found.figures.iter().all(Likeness::is_indistinguishable);
+    let is_alike = found.is_alike();
     let mut text = likeness_table(&camera, &twin, &found, output.is_terminal());
     for change in changed.iter().flatten() {
         text.push_str(&format!("\nchanged: {}", change_words(change)));
@@ -71,18 +72,41 @@ pub(in crate::command) fn compare(arguments: &CompareArguments, output: &Output)
     Ok(if is_as_before { Answer::Yes } else { Answer::No })
 }
 
+/// Refuses frames of another size than those of the twin.
+fn check_size(frames: &[SkyFrame], scenario: &FarRangeScenario, directory: &Path) -> Result<(), Failure> {
+    let camera = &scenario.camera;
+    for SkyFrame { name, image } in frames {
+        if [image.columns, image.rows] != [camera.columns, camera.rows] {
+            return Err(Failure::Usage(format!(
+                "{}: {name} is {} × {} pixels, expected {} × {} as the camera of the twin",
+                directory.display(),
+                image.columns,
+                image.rows,
+                camera.columns,
+                camera.rows
+            )));
+        }
+    }
+    Ok(())
+}
+
 /// Reads an earlier comparison.
 ///
 /// # Errors
 /// [`Failure::Usage`] for a file that is no comparison.
 fn read_kept(path: &Path) -> Result<KeptComparison, Failure> {
     let text = toml_file::read_text(path).map_err(|source| FileError::io(path, "read", source))?;
-    serde_json::from_str(&text).map_err(|error| {
+    let refuse = |reason: String| {
         Failure::Usage(format!(
-            "--baseline: {}: {error}; expected the output of `boresight compare --json`",
+            "--baseline: {}: {reason}; expected the output of `boresight compare --json`",
             path.display()
         ))
-    })
+    };
+    let kept: KeptComparison = serde_json::from_str(&text).map_err(|error| refuse(error.to_string()))?;
+    if kept.figures.is_empty() {
+        return Err(refuse("has no figures".to_owned()));
+    }
+    Ok(kept)
 }
 
 fn change_words(change: &Change) -> String {
@@ -108,7 +132,7 @@ fn twin_guess(scenario: &FarRangeScenario, path: &Path) -> Result<FirstGuess, Fa
 
 /// Returns the comparison as JSON.
 fn document(camera: &FrameSet, twin: &FrameSet, found: &Comparison, changed: Option<&[Change]>) -> Value {
-    let is_alike = found.figures.iter().all(Likeness::is_indistinguishable);
+    let is_alike = found.is_alike();
     json!({
         "ok": changed.map_or(is_alike, <[Change]>::is_empty),
         "changed": changed.map(|changes| changes.iter().map(change_words).collect::<Vec<_>>()),

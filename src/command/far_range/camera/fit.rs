@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use camera_fit::{FirstGuess, FitError, SkyFrame, fit_camera};
+use camera_fit::{FirstGuess, FitError, SkyFrame, fit_camera, saturation_dn};
 use clap::Args;
 use files::{AtomicFile, Failure, GreyImage, PixelConversion};
 use serde_json::json;
 use twin::{FrameSet, MeasuredSensor, Origin, TwinCamera, camera_toml};
 
 use super::fit_text::{document, fit_text, warnings};
-use super::guess::GuessArguments;
+use super::guess::{GuessArguments, Known};
 use super::images::{images, read_frames};
 use super::mosaic::{Mosaic, camera_of_pixels};
 use super::pages::write_fit_page;
@@ -47,8 +47,9 @@ pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, F
     check_option(arguments.report.as_ref())?;
     let sensor = arguments.guess.sensor()?;
     let mut frames = read_frames(&paths, output)?;
-    let mut guess = arguments.guess.first_guess(directory, &paths, output)?;
+    let Known { mut guess, exposure_s } = arguments.guess.first_guess(directory, &paths, output)?;
     let size = frames.first().map_or([0; 2], |frame| [frame.image.columns, frame.image.rows]);
+    let saturation_dn = saturation_dn(&frames);
     if let Some(mosaic) = arguments.bayer {
         // The squares of a mosaic are fitted as pixels.
         guess.pixel_um = guess.pixel_um.map(|side_um| 2.0 * side_um);
@@ -57,12 +58,13 @@ pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, F
         }
     }
     let Some(mut set) = fitted(directory, frames, &guess, output)? else { return Ok(Answer::No) };
-    let measured = measured_sensor(&set, sensor.as_ref(), arguments.guess.exposure)?;
+    let measured = measured_sensor(&set, sensor.as_ref(), exposure_s)?;
     let is_twin_needed = arguments.out.is_some() || arguments.report.is_some();
     let mut twin = is_twin_needed.then(|| TwinCamera::of(&set, measured));
     if arguments.bayer.is_some() {
         camera_of_pixels(&mut set.fit, size[0], size[1]);
-        twin.iter_mut().for_each(|twin| twin.scale_profile(2.0));
+        set.fit.saturation_dn = saturation_dn;
+        twin.iter_mut().for_each(|twin| twin.convert_to_mosaic(saturation_dn));
     }
     for warning in warnings(&set.fit, guess.time) {
         output.note(format!("warning: {warning}"));
@@ -73,7 +75,7 @@ pub(super) fn fit(arguments: &FitArguments, output: &Output) -> Result<Answer, F
         text.push_str(&format!("\nreport in {}", path.display()));
     }
     if let (Some(out), Some(twin)) = (&arguments.out, &twin) {
-        let origin = Origin { directory, time: guess.time, exposure_s: arguments.guess.exposure };
+        let origin = Origin { directory, time: guess.time, exposure_s };
         AtomicFile::with_text(out, &camera_toml(&set.fit, twin, &origin))?.commit_new()?;
         text.push_str(&format!("\ncamera in {}", out.display()));
     }

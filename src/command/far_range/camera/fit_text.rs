@@ -1,7 +1,7 @@
 //! Words and JSON of a fit.
 
 use camera_fit::adjustment::Term;
-use camera_fit::{CameraFit, EpochOffset, FittedFrame};
+use camera_fit::{CameraFit, EpochOffset, FittedFrame, MatchedStar};
 use contract::{Angle, Direction, PixelPoint};
 use files::format_utc;
 use hifitime::Epoch;
@@ -91,9 +91,6 @@ fn sensor_text(fit: &CameraFit) -> String {
     if let Some(width_px) = fit.width_px {
         text.push_str(&format!("; stars have σ = {width_px:.2} px"));
     }
-    if let Some(hot_pixels) = fit.hot_pixels {
-        text.push_str(&format!("; {hot_pixels} hot pixels"));
-    }
     if let Some(light) = &fit.photometry {
         let [zero_point, zero_point_sigma] = light.zero_point;
         let [colour, colour_sigma] = light.colour_term;
@@ -169,9 +166,20 @@ pub(super) fn document(fit: &CameraFit, time: Epoch) -> Value {
         "ok": true, "camera": fit.camera, "parameters": parameters, "stars": fit.stars, "rms_px": fit.rms_px,
         "left_out_rms_px": fit.left_out_rms_px.is_finite().then_some(fit.left_out_rms_px),
         "background_dn": fit.background_dn, "noise_dn": fit.noise_dn, "star_sigma_px": fit.width_px,
-        "hot_pixels": fit.hot_pixels, "photometry": photometry, "frames": frames, "unsolved": unsolved,
+        "photometry": photometry, "frames": frames, "unsolved": unsolved,
+        "matched_stars": fit.matched.iter().map(|star| star_document(fit, star)).collect::<Vec<_>>(),
         "epoch_offset_years": fit.epoch.map(|epoch| epoch.years),
         "epoch_offset_sigma_years": fit.epoch.map(|epoch| epoch.sigma_years),
         "warnings": warnings(fit, time),
+    })
+}
+
+/// Returns a star of a frame as JSON.
+fn star_document(fit: &CameraFit, star: &MatchedStar) -> Value {
+    json!({
+        "frame": fit.frames.get(star.frame).map(|frame| frame.name.as_str()), "hip": star.id, "v": star.magnitude,
+        "x_px": star.position.x, "y_px": star.position.y, "residual_px": star.residual_px,
+        "sigma_px": star.sigma_px, "flux_dn": star.flux_dn,
+        "width_px": star.width_px.is_finite().then_some(star.width_px),
     })
 }

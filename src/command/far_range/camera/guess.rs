@@ -20,6 +20,14 @@ const MAX_SPAN_DAYS: f64 = 2.0;
 /// Largest relative error of the field of a camera whose focal length is known.
 const KNOWN_TOLERANCE: f64 = 0.005;
 
+/// First guess and exposure time of the frames.
+pub(super) struct Known {
+    /// First guess of the camera.
+    pub(super) guess: FirstGuess,
+    /// Exposure time, s.
+    pub(super) exposure_s: f64,
+}
+
 /// What is known of the camera beforehand.
 #[derive(Debug, Args)]
 pub(in crate::command) struct GuessArguments {
@@ -42,9 +50,10 @@ pub(in crate::command) struct GuessArguments {
     /// otherwise 2026-01-01T00:00:00Z]
     #[arg(long, value_name = "UTC", value_parser = time)]
     time: Option<Epoch>,
-    /// Exposure time of the frames, s, 1e-6 to 1000: for the brightness of stars per second
-    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = exposure)]
-    pub(super) exposure: f64,
+    /// Exposure time of the frames, s, 1e-6 to 1000: for the brightness of stars per second [default: EXPTIME
+    /// of the FITS images, otherwise 1]
+    #[arg(long, value_name = "S", value_parser = exposure)]
+    exposure: Option<f64>,
     /// Sensor file of `boresight camera sensor`: its gain, bias, noise and dark current are those of the
     /// camera
     #[arg(long, value_name = "FILE")]
@@ -61,9 +70,9 @@ impl GuessArguments {
         directory: &Path,
         paths: &[PathBuf],
         output: &Output,
-    ) -> Result<FirstGuess, Failure> {
+    ) -> Result<Known, Failure> {
         let mut headers = Vec::new();
-        if self.field_deg.is_none() || self.time.is_none() {
+        if self.field_deg.is_none() || self.time.is_none() || self.exposure.is_none() {
             for path in paths.iter().filter(|path| has_extension(path, &["fits", "fit", "fts"])) {
                 headers.push(read_sky_header(path)?);
             }
@@ -72,12 +81,14 @@ impl GuessArguments {
             Some(field_deg) => field_deg,
             None => field_of_headers(&headers, directory)?,
         };
-        Ok(FirstGuess {
+        let guess = FirstGuess {
             field_deg,
             tolerance: self.tolerance,
             pixel_um: [self.pixel_um, self.pixel_height_um.unwrap_or(self.pixel_um)],
             time: self.time.unwrap_or_else(|| time_of_headers(&headers, output)),
-        })
+        };
+        let exposure_s = self.exposure.unwrap_or_else(|| exposure_of_headers(&headers, output));
+        Ok(Known { guess, exposure_s })
     }
 
     /// Reads the sensor file; `None` without the option.
@@ -129,6 +140,17 @@ fn time_of_headers(headers: &[SkyHeader], output: &Output) -> Epoch {
         ));
     }
     *first + span * 0.5
+}
+
+/// Returns the exposure time of the first header that states one, s, with a warning where they differ; 1
+/// without one.
+fn exposure_of_headers(headers: &[SkyHeader], output: &Output) -> f64 {
+    let mut times_s = headers.iter().filter_map(|header| header.exposure_s).filter(|time_s| *time_s > 0.0);
+    let Some(first_s) = times_s.next() else { return 1.0 };
+    if times_s.any(|time_s| (time_s / first_s - 1.0).abs() > 1e-3) {
+        output.note("warning: the frames have different exposure times; that of the first is used for all");
+    }
+    first_s
 }
 
 /// Returns the first guess for frames of a known camera.

@@ -12,7 +12,7 @@ use twin::{FrameSet, Origin, TwinCamera, pointings, scenario_text, twin_frames};
 
 use super::fit::{fitted, measured_sensor};
 use super::fit_text::{fit_text, warnings};
-use super::guess::{GuessArguments, known_guess};
+use super::guess::{GuessArguments, Known, known_guess};
 use super::images::{images, read_frames};
 use super::refuse_existing;
 use crate::command::Answer;
@@ -39,17 +39,21 @@ pub(in crate::command) fn twin(arguments: &TwinArguments, output: &Output) -> Re
     let directory = &arguments.directory;
     let paths = images(directory)?;
     let (scenario, attitudes) = (&arguments.out, arguments.out.with_extension("aem"));
+    if *scenario == attitudes {
+        let message = format!("--out is {}, expected a name that ends with .toml", scenario.display());
+        return Err(Failure::Usage(message));
+    }
     for file in [scenario, &attitudes] {
         refuse_existing(file)?;
     }
     let sensor = arguments.guess.sensor()?;
     let frames = read_frames(&paths, output)?;
-    let guess = arguments.guess.first_guess(directory, &paths, output)?;
+    let Known { guess, exposure_s } = arguments.guess.first_guess(directory, &paths, output)?;
     let Some(set) = fitted(directory, frames, &guess, output)? else { return Ok(Answer::No) };
     for warning in warnings(&set.fit, guess.time) {
         output.note(format!("warning: {warning}"));
     }
-    let origin = Origin { directory, time: guess.time, exposure_s: arguments.guess.exposure };
+    let origin = Origin { directory, time: guess.time, exposure_s };
     let measured = measured_sensor(&set, sensor.as_ref(), origin.exposure_s)?;
     let twin = TwinCamera::of(&set, measured);
     AtomicFile::with_text(&attitudes, &pointings(&set.fit, guess.time).to_kvn())?.commit_new()?;

@@ -180,8 +180,6 @@ pub struct CameraFit {
     pub background_dn: f64,
     /// Noise of a pixel, median over the frames, DN.
     pub noise_dn: f64,
-    /// Number of pixels that are bright in at least half of the frames; `None` for fewer than three frames.
-    pub hot_pixels: Option<usize>,
     /// Brightness scale; `None` with too few stars.
     pub photometry: Option<Photometry>,
     /// Value of a saturated pixel, DN: the largest value of the frames if several pixels have it, otherwise
@@ -244,7 +242,8 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
         unsolved.push(left_out(contradiction.frame, contradiction.reason(&fitted)));
     }
     let observations = solved.observations(&sources, &list);
-    let epoch = epoch_offset(&camera, &adjustment, &observations, guess.time).map_err(FitError::Time)?;
+    // Near the end of the ephemerides there is no later year to compare with.
+    let epoch = epoch_offset(&camera, &adjustment, &observations, guess.time).ok().flatten();
     let stars = observations.len();
     Ok(CameraFit {
         sigmas: Term::ALL.iter().map(|term| parameter(&camera, *term, &adjustment, &fitted)).collect(),
@@ -257,7 +256,6 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
         width_px: median(solved.widths_px(&sources)),
         background_dn: median(sources.iter().map(|frame| frame.background_dn).collect()).unwrap_or(f64::NAN),
         noise_dn: median(sources.iter().map(|frame| frame.noise_dn).collect()).unwrap_or(f64::NAN),
-        hot_pixels: hot_pixels(&sources),
         photometry: photometry(&solved.lights(&fitted, &sources, &list)),
         saturation_dn,
         full_scale: frames.iter().map(|frame| frame.image.full_scale).fold(0.0, f64::max),
@@ -273,7 +271,7 @@ pub fn fit_camera(frames: &[SkyFrame], guess: &FirstGuess) -> Result<CameraFit, 
 /// Returns the value of a saturated pixel: the largest value of all frames if pixels pile up at it (at least
 /// four, and more than in the tenth below it), otherwise the largest value that the files can hold. A
 /// converter of 12 or 14 bits fills files of 16 bits only to a part.
-fn saturation_dn(frames: &[SkyFrame]) -> f64 {
+pub fn saturation_dn(frames: &[SkyFrame]) -> f64 {
     let full_scale = frames.iter().map(|frame| frame.image.full_scale).fold(0.0, f64::max);
     let mut largest = f32::NEG_INFINITY;
     for frame in frames {
@@ -394,27 +392,6 @@ fn parameter(
 ) -> (Term, f64, bool) {
     let sigma = adjustment.covariance[term as usize][term as usize].sqrt();
     (term, camera.parameter_sigma(term, sigma, fitted), sigma < 0.5 * term.prior_sigma())
-}
-
-/// Returns the number of pixels that are a maximum in at least half of the frames; `None` for fewer than
-/// three.
-fn hot_pixels(sources: &[ImageSources]) -> Option<usize> {
-    if sources.len() < 3 {
-        return None;
-    }
-    let mut peaks: Vec<[usize; 2]> = Vec::new();
-    for frame in sources {
-        peaks.extend(frame.sources.iter().map(|source| source.peak));
-    }
-    peaks.sort_unstable();
-    let mut count = 0;
-    let mut first = 0;
-    while first < peaks.len() {
-        let same = peaks[first..].iter().take_while(|peak| **peak == peaks[first]).count();
-        count += usize::from(2 * same >= sources.len());
-        first += same;
-    }
-    Some(count)
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

@@ -32,6 +32,7 @@ pub use background::{Background, clipped};
 pub use epoch::EpochOffset;
 pub use fit::{
     CameraFit, FirstGuess, FitError, FittedFrame, MatchedStar, SkyFrame, UnsolvedFrame, fit_camera,
+    saturation_dn,
 };
 pub use reading::Reading;
 pub use sources::FLUX_REACH_PX;

@@ -29,7 +29,7 @@ pub fn camera_toml(fit: &CameraFit, twin: &TwinCamera, origin: &Origin<'_>) -> S
          # Epoch of the star places: {}. Values without ± are assumed, or taken as the comment says.\n",
         fit.frames.len(),
         fit.stars,
-        origin.directory.display(),
+        one_line(origin.directory),
         fit.rms_px,
         format_utc(origin.time),
     );
@@ -41,6 +41,11 @@ pub fn camera_toml(fit: &CameraFit, twin: &TwinCamera, origin: &Origin<'_>) -> S
     text.push_str(&optics_tables(twin));
     text.push_str(&radiometry_table(fit, twin, origin.exposure_s));
     text
+}
+
+/// Returns a path as text without control characters, which would end a comment.
+fn one_line(path: &Path) -> String {
+    path.display().to_string().replace(char::is_control, "?")
 }
 
 fn geometry_table(fit: &CameraFit) -> String {
@@ -81,14 +86,15 @@ fn geometry_table(fit: &CameraFit) -> String {
 
 fn sensor_table(fit: &CameraFit, twin: &TwinCamera, exposure_s: f64) -> String {
     let gain = twin.gain_e_per_dn;
+    let corrected = if twin.is_corrected { ", corrected until the twin's frames agree" } else { "" };
     let read_noise_e = twin.read_noise_dn * gain;
     let mut text = format!(
         "[sensor]\n\
          bit_depth = {} # holds the saturation level\n\
          gain_e_per_dn = {gain:.4} # assumed: {:.0} electrons at full scale; flat fields would determine it\n\
-         bias_dn = {:.3} # the background of the frames, with the light of the sky\n\
+         bias_dn = {:.3} # the background of the frames, with the light of the sky{corrected}\n\
          full_well_e = {:.1} # {:.0} DN, {}\n\
-         read_noise_e = {read_noise_e:.4} # the noise of the frames, with that of the sky\n\
+         read_noise_e = {read_noise_e:.4} # the noise of the frames, with that of the sky{corrected}\n\
          dark_current_e_per_s = 0.0 # in the bias; dark frames would determine it\n\
          background_e_per_s = 0.0 # in the bias\n",
         twin.bit_depth,

@@ -49,6 +49,8 @@ fn segment(frame: &FittedFrame, middle: Epoch) -> Option<AemSegment> {
 pub fn scenario_text(set: &FrameSet, twin: &TwinCamera, origin: &Origin<'_>, attitudes: &str) -> String {
     let camera = camera_toml(&set.fit, twin, origin);
     let exposure_s = origin.exposure_s;
+    // The escapes of a JSON string are those of TOML.
+    let attitudes = serde_json::Value::from(attitudes);
     format!(
         "# The twin of a camera: the pointings of {count} frames of it, with what was fitted to them.\n\
          # `boresight compare DIR THIS_FILE` states where its frames differ from those of the camera.\n\
@@ -65,7 +67,7 @@ pub fn scenario_text(set: &FrameSet, twin: &TwinCamera, origin: &Origin<'_>, att
          nominal = {{ phi_deg = 0.0, theta_deg = 0.0, psi_deg = 0.0 }}\n\
          actual = {{ phi_deg = 0.0, theta_deg = 0.0, psi_deg = 0.0 }}\n\n\
          [attitude]\n\
-         guidance = {{ mode = \"aem\", file = \"{attitudes}\" }}\n\
+         guidance = {{ mode = \"aem\", file = {attitudes} }}\n\
          motion_smear = \"off\"\n\n\
          [knowledge]\n\n\
          [shutter]\n\

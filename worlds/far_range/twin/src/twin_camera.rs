@@ -4,7 +4,7 @@ use camera_fit::{FLUX_REACH_PX, ProfileKind, StarProfile};
 
 use crate::FrameSet;
 use crate::likeness::background::FrameBackground;
-use crate::likeness::hot_pixels::hot_heights_dn;
+use crate::likeness::hot_pixels::hot_pixels;
 use crate::likeness::{Comparison, centred, covariance, variance_of_offsets};
 
 /// Electrons of a pixel at full scale that are assumed where the gain is unknown: the full well of a small
@@ -16,11 +16,6 @@ const MAX_NOISE_E: f64 = 450.0;
 
 /// Variance of the rounding to whole numbers, DN².
 const ROUNDING_VARIANCE: f64 = 1.0 / 12.0;
-
-/// Height of a hot pixel, in standard deviations of the noise of a pixel, and smallest number of frames that
-/// separate it from a star.
-const HOT_SIGMAS: f64 = 5.0;
-const MIN_HOT_FRAMES: usize = 3;
 
 /// Limits of the exponent of the distribution of hot pixels.
 const MIN_HOT_INDEX: f64 = 0.3;
@@ -37,6 +32,8 @@ const ASSUMED_WIDTH_PX: f64 = 0.8;
 pub struct TwinCamera {
     /// Bits of the digital numbers, 8 to 16: the fewest that hold the saturation level.
     pub bit_depth: u8,
+    /// True if the values were corrected by the frames of the twin.
+    pub is_corrected: bool,
     /// Measured sensor; `None`: the values below are its own.
     pub sensor: Option<MeasuredSensor>,
     /// Electrons per DN; assumed where no sensor was measured.
@@ -51,7 +48,7 @@ pub struct TwinCamera {
     pub column_dn: f64,
     /// Standard deviation of the offsets of columns that stay, DN.
     pub fixed_column_dn: f64,
-    /// Hot pixels; `None` for fewer than three frames.
+    /// Hot pixels; `None` for fewer than three frames at different pointings.
     pub hot_pixels: Option<HotPixels>,
     /// Profile of the stars.
     pub profile: StarProfile,
@@ -102,17 +99,17 @@ impl TwinCamera {
         let largest_noise_dn = noise_dn.max(row_dn).max(column_dn).max(fixed_column_dn);
         Self {
             bit_depth,
-            gain_e_per_dn: sensor.as_ref().map_or(
-                (ASSUMED_FULL_SCALE_E / fit.saturation_dn).min(MAX_NOISE_E / largest_noise_dn),
-                |sensor| sensor.gain_e_per_dn,
-            ),
+            gain_e_per_dn: sensor
+                .as_ref()
+                .map_or(assumed_gain(fit.saturation_dn, largest_noise_dn), |sensor| sensor.gain_e_per_dn),
+            is_corrected: false,
             sensor,
             bias_dn: mean(&levels).unwrap_or(fit.background_dn).max(0.0),
             read_noise_dn: (noise_dn * noise_dn - ROUNDING_VARIANCE).max(0.0).sqrt(),
             row_dn,
             column_dn,
             fixed_column_dn,
-            hot_pixels: hot_pixels(set),
+            hot_pixels: measured_hot_pixels(set),
             profile: fit.profile.unwrap_or(assumed),
             has_profile: fit.profile.is_some(),
             zero_point_dn: fit.photometry.map(|light| {
@@ -123,9 +120,31 @@ impl TwinCamera {
         }
     }
 
-    /// Multiplies the width of the stars.
-    pub fn scale_profile(&mut self, factor: f64) {
-        self.profile.kind = narrowed(self.profile.kind, factor);
+    /// Converts the figures of a camera whose images are the means of the two green pixels of each square of
+    /// two by two to those of the pixels of the mosaic, whose saturation is `saturation_dn`.
+    pub fn convert_to_mosaic(&mut self, saturation_dn: f64) {
+        // Of the mean of two pixels, the variance is half of theirs, and that of the rounding a
+        // twenty-fourth.
+        self.read_noise_dn = (2.0 * self.read_noise_dn * self.read_noise_dn + ROUNDING_VARIANCE).sqrt();
+        for offset_dn in [&mut self.row_dn, &mut self.column_dn, &mut self.fixed_column_dn] {
+            *offset_dn *= std::f64::consts::SQRT_2;
+        }
+        if let Some(hot) = &mut self.hot_pixels {
+            // A square shows the hot pixels of its green half, each at half of its height.
+            hot.count *= 2;
+            hot.limit_dn *= 2.0;
+        }
+        if let Some([zero_point_dn, _]) = &mut self.zero_point_dn {
+            // The squares of a star are a quarter of its pixels.
+            *zero_point_dn *= 4.0;
+        }
+        self.profile.kind = narrowed(self.profile.kind, 2.0);
+        self.bit_depth = bits(saturation_dn);
+        if self.sensor.is_none() {
+            let largest_dn =
+                self.read_noise_dn.max(self.row_dn).max(self.column_dn).max(self.fixed_column_dn);
+            self.gain_e_per_dn = assumed_gain(saturation_dn, largest_dn);
+        }
     }
 
     /// Corrects the twin by a comparison of its frames with those of the camera: level, noise, offsets,
@@ -136,7 +155,9 @@ impl TwinCamera {
     pub fn correct(&mut self, comparison: &Comparison) -> bool {
         let before = self.clone();
         for figure in &comparison.figures {
-            if figure.is_indistinguishable() {
+            // The tables of a measured sensor are as they were measured.
+            let is_of_sensor = !matches!(figure.code, "star_flux" | "star_width");
+            if figure.is_indistinguishable() || (is_of_sensor && self.sensor.is_some()) {
                 continue;
             }
             let squares = |value: Option<f64>| value.map_or(0.0, |value| value * value);
@@ -151,16 +172,18 @@ impl TwinCamera {
                 "column_noise" => self.column_dn = less_variance(self.column_dn, figure.difference),
                 "star_flux" => {
                     if let Some([zero_point_dn, _]) = &mut self.zero_point_dn {
-                        *zero_point_dn *= libm::exp(-0.01 * figure.difference);
+                        *zero_point_dn /= 1.0 + 0.01 * figure.difference;
                     }
                 }
                 "star_width" => {
-                    self.profile.kind = narrowed(self.profile.kind, libm::exp(-0.01 * figure.difference))
+                    self.profile.kind = narrowed(self.profile.kind, 1.0 / (1.0 + 0.01 * figure.difference))
                 }
                 _ => {}
             }
         }
-        *self != before
+        let is_changed = *self != before;
+        self.is_corrected |= is_changed;
+        is_changed
     }
 }
 
@@ -175,6 +198,11 @@ fn narrowed(kind: ProfileKind, factor: f64) -> ProfileKind {
         ProfileKind::Gaussian { sigma_px } => ProfileKind::Gaussian { sigma_px: sigma_px * factor },
         ProfileKind::Moffat { fwhm_px, beta } => ProfileKind::Moffat { fwhm_px: fwhm_px * factor, beta },
     }
+}
+
+/// Returns the gain that is assumed, with which the noise is one that a scenario can have.
+fn assumed_gain(saturation_dn: f64, largest_noise_dn: f64) -> f64 {
+    (ASSUMED_FULL_SCALE_E / saturation_dn).min(MAX_NOISE_E / largest_noise_dn)
 }
 
 /// Returns the fewest bits, 8 to 16, whose largest number is not below a value.
@@ -215,12 +243,8 @@ fn offsets(backgrounds: &[FrameBackground], pick: fn(&FrameBackground) -> &Vec<f
 }
 
 /// Returns the hot pixels, with the exponent of greatest likelihood n/Σ ln(height/limit) (Hill 1975).
-fn hot_pixels(set: &FrameSet) -> Option<HotPixels> {
-    if set.fit.frames.len() < MIN_HOT_FRAMES {
-        return None;
-    }
-    let limit_dn = HOT_SIGMAS * set.fit.noise_dn;
-    let heights = hot_heights_dn(set, limit_dn);
+fn measured_hot_pixels(set: &FrameSet) -> Option<HotPixels> {
+    let (heights, limit_dn) = hot_pixels(set)?;
     let sum: f64 = heights.iter().map(|height| libm::log(height / limit_dn)).sum();
     let index = (heights.len() as f64 / sum.max(1e-9)).clamp(MIN_HOT_INDEX, MAX_HOT_INDEX);
     Some(HotPixels { count: heights.len(), limit_dn, index })

@@ -66,6 +66,8 @@ pub struct Likeness {
     pub limit: f64,
     /// Difference that would be recognised with a probability of 95 %.
     pub visible: f64,
+    /// Probability of a difference at least as large if there is none.
+    pub probability: f64,
 }
 
 impl Likeness {
@@ -102,6 +104,21 @@ impl Likeness {
             difference: difference.value,
             limit: quantile * difference.sigma,
             visible: (quantile + Z_95_ONE_SIDED) * difference.sigma,
+            probability: chance_of(difference),
+        }
+    }
+
+    /// States a figure of which the logarithm of the ratio, twin over camera, is estimated: in percent.
+    pub(crate) fn of_ratio(code: &'static str, name: &'static str, ln_ratio: Estimate) -> Self {
+        let of_logarithm = Self::of_difference(code, name, Unit::Percent, ln_ratio);
+        let percent = |logarithm: f64| 100.0 * libm::expm1(logarithm);
+        // The limit on the side of the difference, so that both contain 0 or neither.
+        let limit = percent(of_logarithm.limit.copysign(ln_ratio.value)).abs();
+        Self {
+            difference: percent(ln_ratio.value),
+            limit,
+            visible: percent(of_logarithm.visible),
+            ..of_logarithm
         }
     }
 
@@ -127,6 +144,17 @@ fn joint_freedom(first: Estimate, second: Estimate) -> f64 {
     let of_errors =
         first_square * first_square / first.freedom + second_square * second_square / second.freedom;
     if of_errors > 0.0 { sum * sum / of_errors } else { f64::INFINITY }
+}
+
+/// Returns the probability of a difference at least as large, on either side, if there is none.
+fn chance_of(difference: Estimate) -> f64 {
+    if difference.sigma <= 0.0 {
+        return if difference.value == 0.0 { 1.0 } else { 0.0 };
+    }
+    let t = (difference.value / difference.sigma).abs();
+    // Beyond a million degrees of freedom Student's t is normal.
+    let freedom = difference.freedom.clamp(1.0, 1e6);
+    StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |student| 2.0 * student.sf(t))
 }
 
 /// Returns the 97.5 % quantile of Student's t.

@@ -17,7 +17,8 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// Returns the spectrum along the rows of a plane. Pixels left out count as 0.
+    /// Returns the spectrum along the rows of a plane. Pixels left out count as 0, and the power is that of
+    /// the kept ones; pieces of which less than half is kept are left out.
     pub(crate) fn along_rows(plane: &Plane) -> Self {
         Self::of(plane.rows, plane.columns, |line, place| plane.at(place, line))
     }
@@ -40,12 +41,18 @@ impl Spectrum {
         for line in (0..lines).step_by(STEP) {
             for first in (0..(length + 1).saturating_sub(LENGTH_PX)).step_by(LENGTH_PX) {
                 let mut piece = [0.0; LENGTH_PX];
+                let mut count = 0;
                 for (offset, kept) in piece.iter_mut().enumerate() {
                     let read = value(line, first + offset);
-                    *kept = if read.is_nan() { 0.0 } else { read };
+                    if !read.is_nan() {
+                        *kept = read;
+                        count += 1;
+                    }
                 }
-                add_periodogram(&piece, &turns, &mut power);
-                pieces += 1.0;
+                if 2 * count >= LENGTH_PX {
+                    add_periodogram(&piece, &turns, LENGTH_PX as f64 / count as f64, &mut power);
+                    pieces += 1.0;
+                }
             }
         }
         for value in &mut power {
@@ -71,8 +78,8 @@ impl Spectrum {
     }
 }
 
-/// Adds the power of a piece at each frequency.
-fn add_periodogram(piece: &[f64; LENGTH_PX], turns: &[[f64; 2]], power: &mut [f64]) {
+/// Adds the power of a piece at each frequency, times `factor`.
+fn add_periodogram(piece: &[f64; LENGTH_PX], turns: &[[f64; 2]], factor: f64, power: &mut [f64]) {
     for (index, sum) in power.iter_mut().enumerate() {
         let (mut real, mut imaginary) = (0.0, 0.0);
         for (place, value) in piece.iter().enumerate() {
@@ -80,7 +87,7 @@ fn add_periodogram(piece: &[f64; LENGTH_PX], turns: &[[f64; 2]], power: &mut [f6
             real += value * cosine;
             imaginary += value * sine;
         }
-        *sum += (real * real + imaginary * imaginary) / LENGTH_PX as f64;
+        *sum += factor * (real * real + imaginary * imaginary) / LENGTH_PX as f64;
     }
 }
 

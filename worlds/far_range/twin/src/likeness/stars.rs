@@ -101,7 +101,7 @@ pub(crate) fn likenesses(stars: &[SharedStar]) -> (Vec<Likeness>, Vec<NotCompare
         ("position_scatter", "scatter of positions", scatter),
     ] {
         match estimate {
-            Some(estimate) => figures.push(Likeness::of_difference(code, name, Unit::Percent, estimate)),
+            Some(estimate) => figures.push(Likeness::of_ratio(code, name, estimate)),
             None => missing.push(too_few(name, stars.len())),
         }
     }
@@ -120,11 +120,11 @@ fn too_few(name: &'static str, stars: usize) -> NotCompared {
     NotCompared { name, reason }
 }
 
-/// Returns the mean of the logarithm of the ratio of a value, twin over camera, in percent.
+/// Returns the mean of the logarithm of the ratio of a value, twin over camera.
 fn ratio(stars: &[SharedStar], value: fn(&StarMeans) -> f64) -> Option<Estimate> {
     let mut differences = Vec::with_capacity(stars.len());
     for SharedStar { sets: [camera, twin], .. } in stars {
-        let difference = 100.0 * (value(twin) - value(camera));
+        let difference = value(twin) - value(camera);
         if difference.is_finite() {
             differences.push(difference);
         }

@@ -38,8 +38,8 @@ pub fn camera_fit_page(set: &FrameSet, twin: &TwinCamera, directory: &str) -> Re
         widths(fit, twin),
         detector(fit, twin),
     ];
-    let (fx, _) = fit.camera.focal_length_px();
-    let half = |side: usize| 2.0 * libm::atan(0.5 * side as f64 / fx).to_degrees();
+    let (fx, fy) = fit.camera.focal_length_px();
+    let angle = |side: usize, focal_px: f64| 2.0 * libm::atan(0.5 * side as f64 / focal_px).to_degrees();
     Ok(Page {
         title: format!("Camera of {directory}"),
         kind: "Camera from frames of the night sky",
@@ -59,7 +59,7 @@ pub fn camera_fit_page(set: &FrameSet, twin: &TwinCamera, directory: &str) -> Re
         verdict: Verdict::new(findings(fit)),
         facts: vec![
             ("Size", format!("{} × {} px", fit.camera.columns, fit.camera.rows)),
-            ("Field", format!("{:.3}° × {:.3}°", half(fit.camera.columns), half(fit.camera.rows))),
+            ("Field", format!("{:.3}° × {:.3}°", angle(fit.camera.columns, fx), angle(fit.camera.rows, fy))),
             ("Focal length", format!("{fx:.2} px")),
             ("Stars left out of the fit", format!("{} px rms", cell(finite(fit.left_out_rms_px)))),
             ("Boresight", env!("CARGO_PKG_VERSION").to_owned()),

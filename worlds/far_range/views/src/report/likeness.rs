@@ -1,8 +1,7 @@
 //! Report of the comparison of a camera with its twin.
 
 use ::report::charts::chart::{
-    BESIDE, Chart, MEASURED, REFERENCE, WRONG, axes, dashed, intervals_across, line, log_axis, points,
-    rounded,
+    BESIDE, Chart, MEASURED, REFERENCE, axes, dashed, intervals_across, line, log_axis, points, rounded,
 };
 use ::report::charts::plotly::{Axis, Layout};
 use ::report::page::data_table::DataTable;
@@ -13,7 +12,7 @@ use twin::FrameSet;
 use twin::likeness::{Comparison, LENGTH_PX, Likeness};
 
 use super::camera_fit::frame_picture;
-use crate::table::likeness_cells;
+use crate::table::{likeness_cells, whole_words};
 
 /// Differences beyond this many intervals are drawn at this distance.
 const MAX_SHOWN: f64 = 6.0;
@@ -35,11 +34,12 @@ pub fn likeness_page(
         version: env!("CARGO_PKG_VERSION").to_owned(),
         lead: vec![format!(
             "{} of {} figures cannot be distinguished with {} frames of the camera and {} of the twin; \
-             {different} differ.",
+             {different} differ. {}",
             found.figures.len() - different,
             found.figures.len(),
             camera.fit.frames.len(),
-            twin.fit.frames.len()
+            twin.fit.frames.len(),
+            whole_words(found)
         )],
         warnings: Vec::new(),
         verdict: Verdict::new(found.figures.iter().map(finding).collect()),
@@ -85,7 +85,7 @@ fn pictures(camera: &FrameSet, twin: &FrameSet) -> Result<Section, Failure> {
         }
     }
     Ok(Section::new("pictures", "Frames")
-        .text("The first frame of each, with the same stretch.")
+        .text("The first frame of each. The stretch of each is its own, from the median to the brightest pixel.")
         .pictures(shown))
 }
 
@@ -206,8 +206,8 @@ fn stars(found: &Comparison) -> Section {
     for star in &found.stars {
         let [camera, twin] = star.sets;
         x.push(rounded(star.magnitude, 3));
-        flux.push(rounded(100.0 * (twin.ln_flux - camera.ln_flux), 3));
-        width.push(rounded(100.0 * (twin.ln_width - camera.ln_width), 3));
+        flux.push(rounded(100.0 * libm::expm1(twin.ln_flux - camera.ln_flux), 3));
+        width.push(rounded(100.0 * libm::expm1(twin.ln_width - camera.ln_width), 3));
     }
     let ends = [x.iter().copied().fold(f64::INFINITY, f64::min), x.iter().copied().fold(-9.0, f64::max)];
     let chart = |caption: &str, title: &str, values: Vec<f64>, colour: &str| {
@@ -222,6 +222,6 @@ fn stars(found: &Comparison) -> Section {
         Chart::new(caption, 300, data, traces, axes("V, mag", title))
     };
     section
-        .chart(chart("Flux of the twin over that of the camera, star by star.", "flux, %", flux, MEASURED))
-        .chart(chart("Width of the twin over that of the camera, star by star.", "width, %", width, WRONG))
+        .chart(chart("Flux of the twin less that of the camera, star by star.", "flux, %", flux, MEASURED))
+        .chart(chart("Width of the twin less that of the camera, star by star.", "width, %", width, BESIDE))
 }

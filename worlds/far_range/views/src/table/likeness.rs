@@ -17,8 +17,9 @@ pub fn likeness_table(camera: &FrameSet, twin: &FrameSet, found: &Comparison, st
         twin.fit.frames.len(),
         found.stars.len()
     ));
+    text.push_str(&wrapped(&format!("{}\n", whole_words(found))));
     let mut table = plain_table(styled);
-    table.set_header(["figure", "camera", "twin", "difference", "± (95 %)", "statement"]);
+    table.set_header(["figure", "camera", "twin", "difference", "± 95 %", ""]);
     for figure in &found.figures {
         let [name, unit, camera, twin, difference, limit, _, _] = likeness_cells(figure);
         let name = if unit.is_empty() { name } else { format!("{name}, {unit}") };
@@ -33,6 +34,15 @@ pub fn likeness_table(camera: &FrameSet, twin: &FrameSet, found: &Comparison, st
     text.trim_end().to_owned()
 }
 
+/// Returns the statement on all figures together.
+pub(crate) fn whole_words(found: &Comparison) -> &'static str {
+    if found.is_alike() {
+        "As a whole they are alike: one figure in twenty differs by chance, and none by more."
+    } else {
+        "As a whole they differ, by more than chance gives in one of so many figures."
+    }
+}
+
 /// Returns the row of a figure: name, unit, both values, difference, interval, statement, smallest visible
 /// difference.
 pub(crate) fn likeness_cells(figure: &Likeness) -> [String; 8] {
@@ -45,11 +55,17 @@ pub(crate) fn likeness_cells(figure: &Likeness) -> [String; 8] {
         figure.unit.words().to_owned(),
         value(figure.camera),
         value(figure.twin),
-        format!("{:+.digits$}", figure.difference),
+        signed(figure.difference, digits),
         number(figure.limit),
         statement.to_owned(),
         number(figure.visible),
     ]
+}
+
+/// Returns a number with its sign; none for one that rounds to 0.
+fn signed(value: f64, digits: usize) -> String {
+    let text = format!("{value:+.digits$}");
+    if text.contains(|digit: char| ('1'..='9').contains(&digit)) { text } else { format!("{:.digits$}", 0.0) }
 }
 
 /// Returns the number of decimals with which an error has two digits.

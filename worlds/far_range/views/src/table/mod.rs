@@ -5,9 +5,9 @@ mod navigation;
 mod score;
 mod visibility;
 
-#[cfg(feature = "report")]
-pub(crate) use likeness::likeness_cells;
 pub use likeness::likeness_table;
+#[cfg(feature = "report")]
+pub(crate) use likeness::{likeness_cells, whole_words};
 pub use navigation::{bound_table, budget_table, navigation_table};
 pub use score::{TableStyle, far_range_table};
 pub use visibility::{visibility_markdown, visibility_table};
