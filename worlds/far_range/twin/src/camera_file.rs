@@ -86,7 +86,7 @@ fn geometry_table(fit: &CameraFit) -> String {
 
 fn sensor_table(fit: &CameraFit, twin: &TwinCamera, exposure_s: f64) -> String {
     let gain = twin.gain_e_per_dn;
-    let corrected = if twin.is_corrected { ", corrected until the twin's frames agree" } else { "" };
+    let corrected = if twin.is_corrected { ", corrected by the twin's frames" } else { "" };
     let read_noise_e = twin.read_noise_dn * gain;
     let mut text = format!(
         "[sensor]\n\
